@@ -1,0 +1,47 @@
+# Everything runs from .venv, which the lock files in requirements/ describe exactly.
+# PYTHON may name the interpreter to build it from: make demo PYTHON=python3.12
+
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: demo test check serve setup lock pictures openapi clean
+
+demo: $(VENV)/run.stamp          ## set up, then plan data set 3 through the service
+	@$(BIN)/prunus demo
+
+test: $(VENV)/dev.stamp          ## set up, then every check and every test
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest
+
+serve: $(VENV)/run.stamp         ## the service, on loopback
+	@$(BIN)/prunus serve
+
+setup: $(VENV)/dev.stamp         ## the environment alone
+
+pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
+	$(BIN)/prunus demo --output docs/pictures
+	$(BIN)/python scripts/update_readme.py
+
+openapi: $(VENV)/run.stamp       ## openapi/openapi.json, from the code
+	$(BIN)/prunus export-openapi -o openapi/openapi.json
+
+$(VENV)/run.stamp: requirements/run.lock pyproject.toml scripts/setup.sh
+	@sh scripts/setup.sh $(VENV) requirements/run.lock
+	@touch $@
+
+$(VENV)/dev.stamp: requirements/dev.lock pyproject.toml scripts/setup.sh
+	@sh scripts/setup.sh $(VENV) requirements/dev.lock
+	@touch $@ $(VENV)/run.stamp
+
+LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate \
+	--no-emit-index-url --no-emit-find-links --custom-compile-command "make lock"
+
+lock:                            ## both lock files anew (needs uv)
+	$(LOCK) pyproject.toml --group dev -o requirements/dev.lock
+	$(LOCK) pyproject.toml --group install -c requirements/dev.lock -o requirements/run.lock
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache

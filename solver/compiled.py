@@ -1,0 +1,49 @@
+"""The one way kernels are compiled: Numba, cached on disk, IEEE arithmetic (no fastmath).
+
+Numba notices a changed file but not a changed function that it inlined from another file, so the
+cache folder is named after everything a kernel depends on: Numba, Python, processor and the sources
+of all kernels. A changed kernel therefore never meets an old binary.
+"""
+
+import hashlib
+import logging
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import llvmlite.binding
+import numba
+
+_KERNEL_FOLDERS = ("kinematics", "approach")
+
+
+def cache_folder() -> Path:
+    """Where this machine keeps the compiled kernels of this version of the sources."""
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    here = Path(__file__).parent
+    sources = sorted(file for folder in _KERNEL_FOLDERS for file in (here / folder).glob("*.py"))
+    digest = hashlib.sha256()
+    for file in (Path(__file__), *sources):
+        digest.update(file.read_bytes())
+    cpu = llvmlite.binding.get_host_cpu_name()
+    python = f"{sys.version_info.major}.{sys.version_info.minor}"
+    name = f"numba-{numba.__version__}-python-{python}-{cpu}-{digest.hexdigest()[:16]}"
+    return root / "prunus" / "kernels" / name
+
+
+def _choose_cache_folder() -> None:
+    if os.environ.get("NUMBA_CACHE_DIR"):
+        return
+    folder = cache_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        folder = Path(tempfile.mkdtemp(prefix="prunus-kernels-"))
+        logging.getLogger(__name__).warning("kernels are compiled anew in %s: %s", folder, error)
+    numba.config.CACHE_DIR = str(folder)
+
+
+_choose_cache_folder()  # Numba reads it when a function is decorated, so it must be set before
+
+kernel = numba.njit(cache=True, error_model="numpy", nogil=True)

@@ -1,0 +1,1 @@
+"""Forward kinematics, Jacobian, and the closed-form inverse for spherical wrists."""

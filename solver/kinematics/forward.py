@@ -1,0 +1,70 @@
+"""Forward kinematics and geometric Jacobian of a serial arm, batched, in plain NumPy.
+
+The verifier judges every answer with these, so they share no code with the compiled inverse.
+"""
+
+import numpy as np
+
+from solver.robots.model import Array, Robot, Tool
+
+
+def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
+    """Frames of all links in the base frame.
+
+    Args:
+        robot: the arm.
+        tool: its tool; the last frame's origin is the tool centre point.
+        q: joint vectors, shape (..., n) [rad].
+
+    Returns:
+        Homogeneous transforms, shape (..., n + 1, 4, 4): the base first, the tool frame last [m].
+
+    Source: T equation 1 (classic Denavit-Hartenberg).
+    """
+    q = np.asarray(q, dtype=np.float64)
+    frames = np.empty((*q.shape[:-1], len(robot.joints) + 1, 4, 4))
+    frames[..., 0, :, :] = np.eye(4)
+    last = len(robot.joints) - 1
+    for i, joint in enumerate(robot.joints):
+        length = joint.d_m + (tool.length_m if i == last else 0.0)
+        cos, sin = np.cos(q[..., i] + joint.offset_rad), np.sin(q[..., i] + joint.offset_rad)
+        cos_twist, sin_twist = np.cos(joint.alpha_rad), np.sin(joint.alpha_rad)
+        link = np.zeros((*q.shape[:-1], 4, 4))
+        link[..., 0, 0], link[..., 1, 0] = cos, sin
+        link[..., 0, 1], link[..., 1, 1], link[..., 2, 1] = (
+            -sin * cos_twist,
+            cos * cos_twist,
+            sin_twist,
+        )
+        link[..., 0, 2], link[..., 1, 2], link[..., 2, 2] = (
+            sin * sin_twist,
+            -cos * sin_twist,
+            cos_twist,
+        )
+        link[..., 0, 3], link[..., 1, 3], link[..., 2, 3] = joint.a_m * cos, joint.a_m * sin, length
+        link[..., 3, 3] = 1.0
+        frames[..., i + 1, :, :] = frames[..., i, :, :] @ link
+    return frames
+
+
+def forward_kinematics(robot: Robot, tool: Tool, q: Array) -> Array:
+    """Pose of the tool frame in the base frame, shape (..., 4, 4) [m], for q of shape (..., n)."""
+    return np.asarray(link_transforms(robot, tool, q)[..., -1, :, :])
+
+
+def jacobian(robot: Robot, tool: Tool, q: Array) -> Array:
+    """Geometric Jacobian of the tool centre point in the base frame.
+
+    Args:
+        robot: the arm, all joints revolute.
+        tool: its tool.
+        q: joint vectors, shape (..., n) [rad].
+
+    Returns:
+        Shape (..., 6, n): three rows of linear velocity [m/rad], three of angular [rad/rad].
+    """
+    frames = link_transforms(robot, tool, q)
+    axes = frames[..., :-1, :3, 2]
+    arms = frames[..., -1:, :3, 3] - frames[..., :-1, :3, 3]
+    columns = np.concatenate((np.cross(axes, arms), axes), axis=-1)
+    return np.asarray(np.swapaxes(columns, -1, -2))

@@ -1,0 +1,1 @@
+"""Robots: a model file each, and what reads them."""

@@ -1,0 +1,148 @@
+"""What is answered: a plan with one approach for each target, planned or infeasible with a reason.
+
+Rows of joint vectors are arrays of shape (rows, joints) [rad]; times in s, lengths in m.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from solver.problem import Problem
+from solver.robots.model import Array
+
+PLANNED: Final = "planned"
+INFEASIBLE: Final = "infeasible"
+
+REASON_CODES: Final = (
+    "out_of_reach",
+    "joint_limit",
+    "standby_infeasible",
+    "cut_in_infeasible",
+    "solver_failed",
+)
+
+
+@dataclass(frozen=True)
+class SolverReport:
+    """What a method did for one target."""
+
+    method: str
+    elapsed_s: float
+    iterations: int
+    status: str
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a target has no approach.
+
+    Attributes:
+        code: one of REASON_CODES.
+        detail: a sentence for people.
+        joint: the limiting joint's name, if a joint limits.
+        margin_rad: how far that joint is inside its limits at best; negative: beyond [rad].
+        margin_m: how far the target is inside the reach at best; negative: beyond [m].
+    """
+
+    code: str
+    detail: str
+    joint: str | None = None
+    margin_rad: float | None = None
+    margin_m: float | None = None
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """Motion from the previous standby (or the start) to this target's standby.
+
+    Attributes:
+        planner: how it was found.
+        joints: its corner postures, shape (rows, joints) [rad].
+        length_rad: sum of the Euclidean lengths of its pieces in joint space [rad].
+    """
+
+    planner: str
+    joints: Array
+    length_rad: float
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A named part of a trajectory; the row at its end is the first of the next."""
+
+    name: str
+    start_s: float
+    end_s: float
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Timed motion for one target: transfer, cut_in, dwell, retreat; joint-linear between rows.
+
+    Attributes:
+        times_s: shape (rows,), from 0, strictly increasing.
+        joints: shape (rows, joints) [rad].
+        segments: in order, without gaps.
+    """
+
+    times_s: Array
+    joints: Array
+    segments: tuple[Segment, ...]
+
+
+@dataclass(frozen=True)
+class Approach:
+    """The answer for one target. Only `solver.verification` makes one that is planned.
+
+    With status "infeasible" only `target_id`, `reason` and `solver` are set.
+
+    Attributes:
+        approach_angle_rad: angle of the approach direction about the branch, in (-pi, pi].
+        tool_side: 1, or -1 when a symmetric tool is turned about its axis by half a turn.
+        branch: number of the inverse kinematics branch, 0 to 7.
+        path_joints: the cut-in, shape (path_points, joints): standby first, thinning last [rad].
+        path_deviation_m: largest distance of the tool centre point from the straight line in the
+            motion as executed, between its rows too.
+        effort: weighted joint travel from the previous standby (or the start) to thinning.
+        margin_rad: smallest distance of a joint to its limit in the whole cut-in.
+    """
+
+    target_id: str
+    status: str
+    solver: SolverReport
+    reason: Reason | None = None
+    approach_angle_rad: float | None = None
+    tool_side: int | None = None
+    branch: int | None = None
+    thinning_joints: Array | None = None
+    standby_joints: Array | None = None
+    path_joints: Array | None = None
+    path_deviation_m: float | None = None
+    effort: float | None = None
+    margin_rad: float | None = None
+    transfer: Transfer | None = None
+    trajectory: Trajectory | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Approaches of a batch in execution order, with the problem they answer."""
+
+    problem: Problem
+    approaches: Sequence[Approach]
+    elapsed_s: float
+
+    @property
+    def planned(self) -> int:
+        """How many targets are planned."""
+        return sum(approach.status == PLANNED for approach in self.approaches)
+
+    @property
+    def infeasible(self) -> int:
+        """How many targets are not."""
+        return len(self.approaches) - self.planned
+
+    @property
+    def total_effort(self) -> float:
+        """Sum of the efforts of the planned targets."""
+        return sum(approach.effort or 0.0 for approach in self.approaches)

@@ -1,0 +1,89 @@
+"""Every tolerance, with its unit and its reason. Nothing else in `solver` holds a bare threshold."""
+
+from typing import Final
+
+# --- Accepted by the verifier -------------------------------------------------------------------
+LIMIT_EXCESS_RAD: Final = 1e-9
+"""A joint beyond its limit by more is refused [rad]. Rounding of the closed form is 1e-14; an
+interior-point solver relaxes bounds by 1e-8, which is why its answers are polished."""
+
+POSITION_ERROR_M: Final = 1e-6
+"""Tool centre point off its place [m]: a thousandth of a servo tick's effect on this arm."""
+
+AXIS_ERROR_RAD: Final = 1e-6
+"""Tool axes off their direction [rad]: at 0.1 m of tool the same order as POSITION_ERROR_M."""
+
+EFFORT_ERROR_RELATIVE: Final = 1e-9
+"""A claimed effort against the recomputed one, relative to max(1, effort)."""
+
+RATE_EXCESS_RELATIVE: Final = 1e-6
+"""Velocities and accelerations above their limits, relative: divided differences of times that are
+rounded at 1e-13 s over steps of 1e-2 s lose nine digits in the second difference."""
+
+SAME_POSTURE_RAD: Final = 1e-9
+"""Two postures that have to be one: where segments join, or rows repeat another field [rad]."""
+
+# --- Inverse kinematics -------------------------------------------------------------------------
+REACH_ROUNDING_M: Final = 1e-12
+"""A wrist centre beyond reach by less is at the edge [m]: rounding of sums of lengths near 0.5 m."""
+
+SINGULAR_WRIST: Final = 1e-10
+"""sin(q5) below which q4 and q6 turn about one axis and q4 is set to zero. Above it the directions
+that give q4 still have six digits; below it the axis error made is at most 1e-10 rad."""
+
+RIGHT_ANGLE_RAD: Final = 1e-12
+"""How far a link twist may be from a right angle for the closed form [rad]: rounding of radians."""
+
+# --- Approach frame and request -----------------------------------------------------------------
+PARALLEL_SINE: Final = 1e-6
+"""|b x p| / |p| below which "straight out from the base" does not define the zero approach angle."""
+
+SHORTEST_DIRECTION: Final = 1e-9
+"""A branch direction shorter than this has no direction; directions may have any unit."""
+
+UNIT_MISTAKE_REACHES: Final = 20.0
+"""A target further away than this many times the reach was not sent in metres."""
+
+# --- Feasible arcs and search -------------------------------------------------------------------
+ARC_SAMPLES: Final = 720
+"""Approach angles at which the feasibility margin is sampled before arcs are refined (0.5 deg)."""
+
+NEAR_FEASIBLE_RAD: Final = 0.3
+"""A sampled maximum of the margin below -this is not looked at more closely: from there the margin
+would have to rise by 0.3 rad within 0.5 deg of approach angle."""
+
+ARC_END_RAD: Final = 1e-12
+"""Width to which the ends of an arc are bisected [rad]; the feasible side is kept."""
+
+ANGLE_STEP_RAD: Final = 1e-10
+"""Width to which a one-dimensional optimum in the approach angle is bracketed [rad]."""
+
+JOINT_RATE_RAD_M: Final = 250.0
+"""Joint travel for tool travel in the cut-in above which it counts as a wrist jump [rad/m]: 14
+degrees of joint for each millimetre; at 2 rad/s the tool would creep at 8 mm/s."""
+
+EXCHANGE_ROUNDS: Final = 8
+"""How often a cut-in posture that breaks a limit between two rows is added to the rows and the
+target solved again. One or two are usual: the posture moves quadratically little."""
+
+EXCHANGE_DENSITY: Final = 8
+"""Postures looked at between two rows of the cut-in when such a posture is searched."""
+
+# --- Nonlinear programme ------------------------------------------------------------------------
+NLP_TOLERANCE: Final = 1e-9
+"""IPOPT's overall error: below the verifier's by three orders in metres and radians."""
+
+NLP_ITERATIONS: Final = 200
+"""IPOPT's iteration limit; warm-started problems take about 15. A budget counts iterations, never
+seconds, so that the same request has the same answer."""
+
+# --- Trajectory ---------------------------------------------------------------------------------
+TRAJECTORY_STEP_S: Final = 0.02
+"""Largest time between two rows of a moving segment [s]; the servos' own loop is not faster."""
+
+TRAJECTORY_HALVINGS: Final = 8
+"""How often the step is halved to keep the cut-in straight between rows; 0.1 ms is the end."""
+
+DEVIATION_SAMPLES: Final = 3
+"""Postures between two rows at which the distance from the straight line is measured. It is nearly
+a parabola between rows, so its middle is among them and its quarter points tell if it is not."""
