@@ -1,0 +1,52 @@
+"""Prunus's solver: approach optimisation for blossoms on branches, without a server.
+
+    from solver import Problem, Target, load_robot, solve
+
+    problem = Problem(load_robot("tabletop"), [Target("1", (0.185, -0.057, 0.42), (-1, -1, 1))])
+    plan = solve(problem)
+
+Metres, radians and seconds in the robot's base frame throughout.
+"""
+
+from solver.exceptions import (
+    Fault,
+    InvalidProblem,
+    InvalidRobot,
+    SolverError,
+    UnknownRobot,
+    UnsupportedKinematics,
+)
+from solver.planner import solve
+from solver.problem import Options, Problem, Target
+from solver.robots.model import Joint, Robot, Tool, load_robot, robot_names
+from solver.solution import Approach, Plan, Reason, Segment, SolverReport, Trajectory, Transfer
+from solver.verification import Residual, Verification, verify, verify_plan
+
+__all__ = [
+    "Approach",
+    "Fault",
+    "InvalidProblem",
+    "InvalidRobot",
+    "Joint",
+    "Options",
+    "Plan",
+    "Problem",
+    "Reason",
+    "Residual",
+    "Robot",
+    "Segment",
+    "SolverError",
+    "SolverReport",
+    "Target",
+    "Tool",
+    "Trajectory",
+    "Transfer",
+    "UnknownRobot",
+    "UnsupportedKinematics",
+    "Verification",
+    "load_robot",
+    "robot_names",
+    "solve",
+    "verify",
+    "verify_plan",
+]

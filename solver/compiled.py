@@ -12,8 +12,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-import llvmlite.binding
+import llvmlite.binding as llvm
 import numba
+from numba.core import config
 
 _KERNEL_FOLDERS = ("kinematics", "approach")
 
@@ -26,7 +27,7 @@ def cache_folder() -> Path:
     digest = hashlib.sha256()
     for file in (Path(__file__), *sources):
         digest.update(file.read_bytes())
-    cpu = llvmlite.binding.get_host_cpu_name()
+    cpu = llvm.get_host_cpu_name()  # type: ignore[no-untyped-call]
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     name = f"numba-{numba.__version__}-python-{python}-{cpu}-{digest.hexdigest()[:16]}"
     return root / "prunus" / "kernels" / name
@@ -41,7 +42,7 @@ def _choose_cache_folder() -> None:
     except OSError as error:
         folder = Path(tempfile.mkdtemp(prefix="prunus-kernels-"))
         logging.getLogger(__name__).warning("kernels are compiled anew in %s: %s", folder, error)
-    numba.config.CACHE_DIR = str(folder)
+    config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
 
 
 _choose_cache_folder()  # Numba reads it when a function is decorated, so it must be set before

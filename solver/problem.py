@@ -155,7 +155,8 @@ def _target_faults(targets: Sequence[Target], reach_m: float) -> Iterable[Fault]
             yield Fault(("targets", k, "id"), "the id is empty")
         elif target.id in first_index:
             yield Fault(
-                ("targets", k, "id"), f"{target.id!r} is also the id of target {first_index[target.id]}"
+                ("targets", k, "id"),
+                f"{target.id!r} is also the id of target {first_index[target.id]}",
             )
         first_index.setdefault(target.id, k)
         if problem := _vector_problem(target.position_m, 3):

@@ -151,7 +151,9 @@ def _check(robot: Robot) -> None:
     if len(robot.home_rad) != len(robot.joints):
         raise InvalidRobot(f"{robot.name}: home_rad needs {len(robot.joints)} values")
     if robot.tool(robot.default_tool) is None:
-        raise InvalidRobot(f"{robot.name}: default_tool {robot.default_tool!r} is not among its tools")
+        raise InvalidRobot(
+            f"{robot.name}: default_tool {robot.default_tool!r} is not among its tools"
+        )
     for joint, home in zip(robot.joints, robot.home_rad, strict=True):
         if not joint.lower_rad < joint.upper_rad:
             raise InvalidRobot(f"{robot.name}: {joint.name} has its limits out of order")

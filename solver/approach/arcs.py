@@ -1,0 +1,78 @@
+"""Feasible arcs of the approach angle, and effort along them, for methods and pictures."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.approach.feasibility import sample
+from solver.approach.search import feasible_arcs
+from solver.approach.task import ApproachTask, approach_task
+from solver.kinematics.spherical_wrist import BRANCHES
+from solver.problem import Problem, Target
+from solver.robots.model import Array
+from solver.tolerances import ARC_SAMPLES
+
+
+@dataclass(frozen=True)
+class Arc:
+    """Approach angles, lower to upper [rad], at which one branch is feasible in the whole cut-in.
+
+    `upper_rad` is beyond pi where the arc crosses the half turn.
+    """
+
+    tool_side: int
+    branch: int
+    lower_rad: float
+    upper_rad: float
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Effort against approach angle.
+
+    Attributes:
+        angles_rad: shape (n,), evenly spaced over one turn from -pi.
+        efforts: shape (curves, n); NaN where infeasible.
+        curves: tool side and branch of each row of `efforts`.
+        arcs: the feasible arcs.
+    """
+
+    angles_rad: Array
+    efforts: Array
+    curves: tuple[tuple[int, int], ...]
+    arcs: tuple[Arc, ...]
+
+
+def sample_angles(n: int) -> Array:
+    """n approach angles over one turn, phi_k = -pi + 2 pi k / n, shape (n,) [rad]."""
+    return np.asarray(-np.pi + 2 * np.pi * np.arange(n) / n)
+
+
+def sample_task(task: ApproachTask, tool_side: int, n: int) -> tuple[Array, Array, Array]:
+    """n angles, and the margins and efforts of all branches there, each of shape (8, n)."""
+    angles = sample_angles(n)
+    margins, efforts = np.empty((BRANCHES, n)), np.empty((BRANCHES, n))
+    sample(task.for_kernels(tool_side), angles, margins, efforts)
+    return angles, margins, efforts
+
+
+def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
+    """Feasible arcs of every branch and tool side of a task."""
+    arcs: list[Arc] = []
+    for side in task.tool_sides:
+        angles, margins, _ = sample_task(task, side, ARC_SAMPLES)
+        found = feasible_arcs(task.for_kernels(side), angles, margins)
+        arcs += [Arc(side, int(branch), float(low), float(high)) for branch, low, high in found]
+    return tuple(arcs)
+
+
+def survey_target(problem: Problem, target: Target, reference: Sequence[float]) -> Survey:
+    """Effort against approach angle for a target, counted from a reference posture [rad]."""
+    task = approach_task(problem, target, reference)
+    rows, curves = [], []
+    for side in task.tool_sides:
+        angles, margins, efforts = sample_task(task, side, ARC_SAMPLES)
+        rows.append(np.where(margins >= 0, efforts, np.nan))
+        curves += [(side, branch) for branch in range(BRANCHES)]
+    return Survey(angles, np.concatenate(rows), tuple(curves), task_arcs(task))

@@ -1,0 +1,154 @@
+"""Kernels: one approach of one target on one branch, with its whole cut-in.
+
+Everything here depends on the approach angle alone; a `CutInTask` holds the rest.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.compiled import kernel
+from solver.kinematics.spherical_wrist import WristGeometry, one_branch, wrap
+from solver.robots.model import Array
+from solver.tolerances import JOINT_RATE_RAD_M, NEAR_FEASIBLE_RAD
+
+
+class CutInTask(NamedTuple):
+    """One target seen from one reference posture, with the tool on one side, for the kernels.
+
+    Attributes:
+        geometry: the arm and tool.
+        lower: lower limits less the margin asked for, shape (6,) [rad].
+        upper: upper limits less the margin asked for, shape (6,) [rad].
+        position: the target, shape (3,) [m].
+        y_axis: the tool's y axis, shape (3,).
+        outward: approach direction at angle zero, shape (3,).
+        sideways: approach direction at a quarter turn, shape (3,).
+        retreats: distances behind the target, from the standoff down to 0, shape (rows,) [m].
+        reference: posture from which effort counts, shape (6,) [rad].
+        weights: weight of each joint, shape (6,).
+        squared: the norm is l2.
+    """
+
+    geometry: WristGeometry
+    lower: Array
+    upper: Array
+    position: Array
+    y_axis: Array
+    outward: Array
+    sideways: Array
+    retreats: Array
+    reference: Array
+    weights: Array
+    squared: bool
+
+
+@kernel
+def tool_axes(task, angle, axes):
+    """Writes the tool frame's axes at an approach angle as columns of `axes`, shape (3, 3)."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    for i in range(3):
+        axes[i, 1] = task.y_axis[i]
+        axes[i, 2] = cos * task.outward[i] + sin * task.sideways[i]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        axes[i, 0] = axes[j, 1] * axes[k, 2] - axes[k, 1] * axes[j, 2]
+
+
+@kernel
+def posture(task, axes, retreat, branch, q):
+    """Writes the posture at a retreat to q, shape (6,); returns the reach margin [m]."""
+    position = np.empty(3)
+    for i in range(3):
+        position[i] = task.position[i] - retreat * axes[i, 2]
+    return one_branch(task.geometry, position, axes, branch, q)
+
+
+@kernel
+def limit_margin(task, q):
+    """Smallest distance of a joint to its limit [rad], negative outside, and that joint's index."""
+    margin, joint = math.inf, 0
+    for i in range(6):
+        inside = min(q[i] - task.lower[i], task.upper[i] - q[i])
+        if inside < margin:
+            margin, joint = inside, i
+    return margin, joint
+
+
+@kernel
+def thinning(task, angle, branch, q):
+    """Writes the thinning posture to q, on the turn nearest to the reference inside the limits.
+
+    Returns the margin: the smallest of the joints' [rad] and the reach's [m].
+    """
+    axes = np.empty((3, 3))
+    tool_axes(task, angle, axes)
+    reach = posture(task, axes, 0.0, branch, q)
+    for i in range(6):
+        for turn in (-2 * math.pi, 2 * math.pi):
+            other = q[i] + turn
+            inside = task.lower[i] <= other <= task.upper[i]
+            if inside and abs(other - task.reference[i]) < abs(q[i] - task.reference[i]):
+                q[i] = other
+    margin, _ = limit_margin(task, q)
+    return min(margin, reach)
+
+
+@kernel
+def trace(task, angle, branch, retreats, rows):
+    """Writes the cut-in to rows, shape (len(retreats), 6), without turns between rows.
+
+    Retreats descend to 0, the thinning posture.
+
+    Returns the margin: the smallest of the joints' [rad], the reach's [m] and, as a share, what is
+    left below the joint rate that counts as a wrist jump.
+    """
+    axes = np.empty((3, 3))
+    tool_axes(task, angle, axes)
+    last = len(retreats) - 1
+    margin = thinning(task, angle, branch, rows[last])
+    for n in range(last - 1, -1, -1):
+        q = rows[n]
+        margin = min(margin, posture(task, axes, retreats[n], branch, q))
+        step = 0.0
+        for i in range(6):
+            change = wrap(q[i] - rows[n + 1, i])
+            q[i] = rows[n + 1, i] + change
+            step = max(step, abs(change))
+        inside, _ = limit_margin(task, q)
+        allowed = JOINT_RATE_RAD_M * (retreats[n] - retreats[n + 1])
+        margin = min(margin, inside, 1.0 - step / allowed)
+    return margin
+
+
+@kernel
+def effort(task, q):
+    """Weighted joint travel from the reference to q (T's minimum effort; squared for l2)."""
+    total = 0.0
+    for i in range(6):
+        change = abs(q[i] - task.reference[i])
+        total += task.weights[i] * (change * change if task.squared else change)
+    return total
+
+
+@kernel
+def evaluate(task, angle, branch, rows):
+    """Margin of the whole cut-in and effort of its thinning posture; `rows` is scratch.
+
+    Where the thinning posture alone is far from feasible its margin is returned.
+    """
+    margin = thinning(task, angle, branch, rows[-1])
+    cost = effort(task, rows[-1])
+    if margin < -NEAR_FEASIBLE_RAD:
+        return margin, cost
+    return trace(task, angle, branch, task.retreats, rows), cost
+
+
+@kernel
+def sample(task, angles, margins, efforts):
+    """Fills margins and efforts, shape (8, len(angles)), for all branches."""
+    rows = np.empty((len(task.retreats), 6))
+    for branch in range(8):
+        for k in range(len(angles)):
+            margins[branch, k], efforts[branch, k] = evaluate(task, angles[k], branch, rows)

@@ -1,0 +1,92 @@
+"""One target's task definition: what every method is given."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from solver.approach.feasibility import CutInTask, trace
+from solver.approach.frame import ApproachFrame, approach_frame
+from solver.kinematics.spherical_wrist import wrist_geometry
+from solver.problem import Options, Problem, Target
+from solver.robots.model import Array, Robot, Tool
+
+
+@dataclass(frozen=True)
+class ApproachTask:
+    """A target, the posture that effort counts from, and the rows of the cut-in that must hold.
+
+    Attributes:
+        retreats_m: distances behind the target at which the cut-in has to be feasible, from the
+            standoff down to 0 [m].
+    """
+
+    robot: Robot
+    tool: Tool
+    options: Options
+    target: Target
+    reference: tuple[float, ...]
+    joint_weights: tuple[float, ...]
+    retreats_m: tuple[float, ...]
+
+    @cached_property
+    def frame(self) -> ApproachFrame:
+        """The target's approach frame."""
+        return approach_frame(self.target.position_m, self.target.branch_direction)
+
+    @property
+    def tool_sides(self) -> tuple[int, ...]:
+        """Sides that the tool may take: 1, and -1 too when it is symmetric."""
+        return (1, -1) if self.options.symmetric_tool else (1,)
+
+    @cached_property
+    def lower(self) -> Array:
+        """Lower limits with the margin asked for taken off, shape (6,) [rad]."""
+        return np.asarray(self.robot.lower + self.options.limit_margin_rad)
+
+    @cached_property
+    def upper(self) -> Array:
+        """Upper limits with the margin asked for taken off, shape (6,) [rad]."""
+        return np.asarray(self.robot.upper - self.options.limit_margin_rad)
+
+    def for_kernels(self, tool_side: int) -> CutInTask:
+        """The task as the kernels take it, with the tool on one side."""
+        return CutInTask(
+            geometry=wrist_geometry(self.robot, self.tool),
+            lower=self.lower,
+            upper=self.upper,
+            position=np.asarray(self.target.position_m, dtype=np.float64),
+            y_axis=tool_side * self.frame.branch,
+            outward=self.frame.outward,
+            sideways=self.frame.sideways,
+            retreats=np.asarray(self.retreats_m),
+            reference=np.asarray(self.reference),
+            weights=np.asarray(self.joint_weights),
+            squared=self.options.norm == "l2",
+        )
+
+    def postures(self, angle: float, tool_side: int, branch: int, retreats: Array) -> Array:
+        """Closed-form postures of the cut-in, shape (len(retreats), 6) [rad]; retreats end at 0."""
+        rows = np.empty((len(retreats), 6))
+        trace(self.for_kernels(tool_side), angle, branch, np.ascontiguousarray(retreats), rows)
+        return rows
+
+    def with_retreat(self, retreat: float) -> "ApproachTask":
+        """The same task with one more row at which the cut-in has to be feasible."""
+        return replace(self, retreats_m=tuple(sorted({*self.retreats_m, retreat}, reverse=True)))
+
+
+def approach_task(problem: Problem, target: Target, reference: Sequence[float]) -> ApproachTask:
+    """The task of one target of a problem, seen from a reference posture [rad]."""
+    options = problem.options
+    rows = np.linspace(options.standoff_m, 0.0, options.path_points)
+    return ApproachTask(
+        robot=problem.robot,
+        tool=problem.mounted_tool,
+        options=options,
+        target=target,
+        reference=tuple(float(value) for value in reference),
+        joint_weights=problem.joint_weights,
+        retreats_m=tuple(float(row) for row in rows),
+    )

@@ -1,0 +1,27 @@
+"""`floating_z`: T 3.4.2. Evenly spaced approach angles, all branches, the least effort wins."""
+
+from solver.approach.arcs import sample_angles, sample_task
+from solver.approach.frame import signed_angle
+from solver.approach.task import ApproachTask
+from solver.diagnosis import diagnose
+from solver.methods.candidate import Candidate
+from solver.solution import Reason
+
+
+def solve_floating_z(task: ApproachTask) -> Candidate | Reason:
+    """The cheapest of `samples` approach angles whose whole cut-in is feasible.
+
+    Ties go to the smaller angle, then to tool side 1, then to the lower branch number. T starts its
+    angles at random; here phi_k = -pi + 2 pi k / n.
+    """
+    n = task.options.samples
+    offers: list[tuple[float, float, int, int, float]] = []
+    for side in task.tool_sides:
+        angles, margins, efforts = sample_task(task, side, n)
+        for branch, k in zip(*(margins >= 0).nonzero(), strict=True):
+            angle = signed_angle(float(angles[k]))
+            offers.append((float(efforts[branch, k]), abs(angle), -side, int(branch), angle))
+    if not offers:
+        return diagnose(task, sample_angles(n))
+    cost, _, negative_side, branch, angle = min(offers)
+    return Candidate(angle, -negative_side, branch, cost, n, "best_of_samples")

@@ -1,0 +1,1 @@
+"""The nonlinear programme of the task definition, and what solves it."""

@@ -1,0 +1,31 @@
+"""The methods, one row each. Adding one is a file in `solver/methods` and a row here."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+from solver.approach.task import ApproachTask
+from solver.methods.candidate import Candidate
+from solver.methods.floating_z import solve_floating_z
+from solver.methods.ncos import solve_ncos
+from solver.methods.semi_analytic import solve_ssas
+from solver.solution import Reason
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to solve one target's task definition."""
+
+    name: str
+    summary: str
+    solve: Callable[[ApproachTask], Candidate | Reason]
+
+
+_ROWS = (
+    Method("floating_z", "evenly spaced approach angles, all branches (T 3.4.2)", solve_floating_z),
+    Method("ssas", "closed form and the optimum over every feasible arc (S 3.2)", solve_ssas),
+    Method("ncos", "nonlinear programme in CasADi, warm-started by ssas (S 3.3)", solve_ncos),
+)
+
+METHODS: Final[Mapping[str, Method]] = MappingProxyType({row.name: row for row in _ROWS})

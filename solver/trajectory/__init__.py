@@ -1,0 +1,1 @@
+"""Timed motion: how a path becomes a trajectory inside the speed limits."""

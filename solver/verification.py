@@ -1,0 +1,266 @@
+"""The one verifier: recomputes every residual of an answer from the problem alone.
+
+It is the only place that gives an approach the status "planned". It shares forward kinematics with
+nothing that solves, and believes no number that a method reports.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from solver.approach.frame import approach_frame
+from solver.cut_in import line_deviation
+from solver.effort import posture_effort
+from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.problem import Problem, Target
+from solver.robots.model import Array
+from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, Trajectory, Transfer
+from solver.tolerances import (
+    AXIS_ERROR_RAD,
+    EFFORT_ERROR_RELATIVE,
+    JOINT_RATE_RAD_M,
+    LIMIT_EXCESS_RAD,
+    POSITION_ERROR_M,
+    RATE_EXCESS_RELATIVE,
+    SAME_POSTURE_RAD,
+)
+from solver.trajectory.rates import rate_ratios
+
+SEGMENTS = ("transfer", "cut_in", "dwell", "retreat")
+
+
+@dataclass(frozen=True)
+class Residual:
+    """One recomputed error and what is allowed; a value that is not a number is not accepted."""
+
+    name: str
+    value: float
+    allowed: float
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the value is within what is allowed."""
+        return bool(self.value <= self.allowed)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """All residuals of one approach."""
+
+    residuals: tuple[Residual, ...]
+
+    @property
+    def accepted(self) -> bool:
+        """Whether every residual is."""
+        return all(residual.accepted for residual in self.residuals)
+
+    @property
+    def failures(self) -> tuple[Residual, ...]:
+        """The residuals that are not."""
+        return tuple(residual for residual in self.residuals if not residual.accepted)
+
+
+def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> Verification:
+    """Residuals of an approach that claims to be a solution, whatever status it carries.
+
+    Args:
+        problem: what was asked.
+        approach: the answer for one of its targets.
+        reference: posture from which effort and transfer count: the start, or with order "given"
+            the previous planned standby, shape (6,) [rad].
+    """
+    target = next((t for t in problem.targets if t.id == approach.target_id), None)
+    claim = _claim(approach)
+    if target is None or claim is None:
+        return Verification((Residual("missing_fields", 1.0, 0.0),))
+    parts = (
+        _shape_residuals(problem, claim),
+        _path_residuals(problem, target, claim),
+        _number_residuals(problem, claim, reference),
+        _motion_residuals(problem, target, claim, reference),
+    )
+    found: list[Residual] = []
+    for part in parts:
+        found += part
+        if not all(residual.accepted for residual in found):
+            break  # later parts rely on the shapes and postures that earlier ones check
+    return Verification(tuple(found))
+
+
+def judge(problem: Problem, approach: Approach, reference: Sequence[float]) -> Approach:
+    """The approach as planned if it verifies, else as infeasible with what failed."""
+    verification = verify(problem, approach, reference)
+    if verification.accepted:
+        return replace(approach, status=PLANNED)
+    failed = ", ".join(
+        f"{residual.name} {residual.value:.3g} (allowed {residual.allowed:.3g})"
+        for residual in verification.failures
+    )
+    reason = Reason("solver_failed", f"the answer did not verify: {failed}")
+    return Approach(approach.target_id, INFEASIBLE, approach.solver, reason=reason)
+
+
+def verify_plan(plan: Plan) -> dict[str, Verification]:
+    """Verification of every approach that a plan calls planned, by target id."""
+    results: dict[str, Verification] = {}
+    reference = plan.problem.start
+    for approach in plan.approaches:
+        if approach.status != PLANNED:
+            continue
+        results[approach.target_id] = verify(plan.problem, approach, reference)
+        if plan.problem.options.order == "given" and approach.standby_joints is not None:
+            reference = tuple(approach.standby_joints)
+    return results
+
+
+@dataclass(frozen=True)
+class _Claim:
+    """The fields of an approach that claims to be planned, all there."""
+
+    approach_angle_rad: float
+    tool_side: int
+    branch: int
+    thinning_joints: Array
+    standby_joints: Array
+    path_joints: Array
+    path_deviation_m: float
+    effort: float
+    margin_rad: float
+    transfer: Transfer
+    trajectory: Trajectory
+
+
+def _claim(approach: Approach) -> _Claim | None:
+    values = {entry.name: getattr(approach, entry.name) for entry in fields(_Claim)}
+    return None if any(value is None for value in values.values()) else _Claim(**values)
+
+
+def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
+    n = len(problem.robot.joints)
+    trajectory, transfer = claim.trajectory, claim.transfer
+    wanted: dict[str, tuple[Array, tuple[int, ...]]] = {
+        "thinning_joints": (claim.thinning_joints, (n,)),
+        "standby_joints": (claim.standby_joints, (n,)),
+        "path_joints": (claim.path_joints, (problem.options.path_points, n)),
+        "trajectory": (trajectory.joints, (len(trajectory.times_s), n)),
+        "transfer": (transfer.joints, (len(transfer.joints), n)),
+    }
+    for name, (array, shape) in wanted.items():
+        wrong = np.shape(array) != shape or not np.isfinite(np.asarray(array)).all()
+        yield Residual(f"{name}_shape", float(wrong), 0.0)
+    names = tuple(segment.name for segment in trajectory.segments)
+    starts = [segment.start_s for segment in trajectory.segments]
+    ends = [segment.end_s for segment in trajectory.segments]
+    whole = names == SEGMENTS and starts[0] == 0.0 and starts[1:] == ends[:-1]
+    rising = len(trajectory.times_s) > 1 and bool(np.all(np.diff(trajectory.times_s) > 0))
+    covered = rising and trajectory.times_s[0] == 0.0 and ends[-1:] == [trajectory.times_s[-1]]
+    yield Residual("trajectory_times", float(not (whole and covered)), 0.0)
+    sides = (1, -1) if problem.options.symmetric_tool else (1,)
+    yield Residual("tool_side", float(claim.tool_side not in sides), 0.0)
+    yield Residual("approach_angle_turns", abs(claim.approach_angle_rad) / np.pi, 1.0)
+
+
+def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
+    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
+    rows = np.asarray(claim.path_joints)
+    frame = approach_frame(target.position_m, target.branch_direction)
+    axes = frame.axes(claim.approach_angle_rad, claim.tool_side)
+    poses = forward_kinematics(robot, tool, rows)
+    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    places = np.asarray(target.position_m) - np.outer(retreats, axes[:, 2])
+    position_errors = np.linalg.norm(poses[:, :3, 3] - places, axis=1)
+    yield Residual("path_position_m", float(position_errors.max()), POSITION_ERROR_M)
+    axis_errors = np.linalg.norm(poses[:, :3, :3] - axes, axis=1)
+    yield Residual("path_axes_rad", float(axis_errors.max()), AXIS_ERROR_RAD)
+    for name, row, end in (
+        ("standby", claim.standby_joints, rows[0]),
+        ("thinning", claim.thinning_joints, rows[-1]),
+    ):
+        difference = float(np.max(np.abs(np.asarray(row) - end)))
+        yield Residual(f"{name}_is_path_end_rad", difference, SAME_POSTURE_RAD)
+    spacing = options.standoff_m / (options.path_points - 1)
+    rate = float(np.abs(np.diff(rows, axis=0)).max()) / spacing
+    yield Residual("wrist_jump_rad_m", rate, JOINT_RATE_RAD_M)
+    for name, pose, row in (("standby", poses[0], rows[0]), ("thinning", poses[-1], rows[-1])):
+        found = inverse_kinematics(robot, tool, pose[None]).joints[0, claim.branch]
+        turned = np.abs(np.remainder(found - row + np.pi, 2 * np.pi) - np.pi).max()
+        yield Residual(f"{name}_branch_rad", float(turned), _BRANCH_RAD)
+
+
+# Two branches of one pose are this far apart unless the arm is all but singular, where the inverse
+# also loses digits: enough to tell a branch, loose enough for rounding.
+_BRANCH_RAD = 1e-4
+
+
+def _number_residuals(
+    problem: Problem, claim: _Claim, reference: Sequence[float]
+) -> Iterator[Residual]:
+    effort = posture_effort(
+        claim.thinning_joints, reference, problem.joint_weights, problem.options.norm
+    )
+    error = abs(effort - claim.effort) / max(1.0, effort)
+    yield Residual("effort_relative", error, EFFORT_ERROR_RELATIVE)
+    margin = cut_in_margin(problem, claim.path_joints, claim.trajectory)
+    yield Residual("margin_claim_rad", abs(margin - claim.margin_rad), SAME_POSTURE_RAD)
+    excess = problem.options.limit_margin_rad - margin
+    yield Residual("limit_excess_rad", excess, LIMIT_EXCESS_RAD)
+
+
+def cut_in_margin(problem: Problem, path_joints: Array, trajectory: Trajectory) -> float:
+    """Smallest distance of a joint to its limit over the rows and the executed cut-in [rad]."""
+    executed = segment_rows(trajectory, "cut_in", "dwell", "retreat")[1]
+    rows = np.concatenate((path_joints, executed))
+    return float(np.minimum(rows - problem.robot.lower, problem.robot.upper - rows).min())
+
+
+def segment_rows(trajectory: Trajectory, first: str, *others: str) -> tuple[Array, Array]:
+    """Times and rows of one segment, or of neighbouring ones, both ends included."""
+    wanted = [segment for segment in trajectory.segments if segment.name in (first, *others)]
+    times = trajectory.times_s
+    inside = (times >= wanted[0].start_s) & (times <= wanted[-1].end_s)
+    return times[inside], trajectory.joints[inside]
+
+
+def _motion_residuals(
+    problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
+) -> Iterator[Residual]:
+    robot, trajectory, transfer = problem.robot, claim.trajectory, claim.transfer
+    standby, thinning = np.asarray(claim.standby_joints), np.asarray(claim.thinning_joints)
+    waypoints = {
+        "transfer": (np.asarray(reference), standby),
+        "cut_in": (standby, thinning),
+        "dwell": (thinning, thinning),
+        "retreat": (thinning, standby),
+    }
+    for name, (start, end) in waypoints.items():
+        times, rows = segment_rows(trajectory, name)
+        if not len(rows):
+            yield Residual(f"{name}_rows", 1.0, 0.0)
+            return
+        apart = max(np.abs(rows[0] - start).max(), np.abs(rows[-1] - end).max())
+        yield Residual(f"{name}_ends_rad", float(apart), SAME_POSTURE_RAD)
+        speed, acceleration = rate_ratios(times, rows, robot.velocity, robot.acceleration)
+        yield Residual(f"{name}_velocity_share", speed, 1 + RATE_EXCESS_RELATIVE)
+        yield Residual(f"{name}_acceleration_share", acceleration, 1 + RATE_EXCESS_RELATIVE)
+    corners = max(
+        np.abs(transfer.joints[0] - reference).max(), np.abs(transfer.joints[-1] - standby).max()
+    )
+    yield Residual("transfer_corners_rad", float(corners), SAME_POSTURE_RAD)
+    rows = trajectory.joints
+    outside = float(np.maximum(robot.lower - rows, rows - robot.upper).max())
+    yield Residual("trajectory_limit_excess_rad", outside, LIMIT_EXCESS_RAD)
+    dwell_times, dwell_rows = segment_rows(trajectory, "dwell")
+    waited = float(dwell_times[-1] - dwell_times[0])
+    yield Residual("dwell_s", abs(waited - problem.options.dwell_s), SAME_POSTURE_RAD)
+    still = float(np.abs(dwell_rows - thinning).max())
+    yield Residual("dwell_moves_rad", still, SAME_POSTURE_RAD)
+    frame = approach_frame(target.position_m, target.branch_direction)
+    direction = frame.direction(claim.approach_angle_rad)
+    for name in ("cut_in", "retreat"):
+        _, rows = segment_rows(trajectory, name)
+        deviation = line_deviation(robot, problem.mounted_tool, rows, target.position_m, direction)
+        yield Residual(f"{name}_deviation_m", deviation, problem.options.straightness_m)
+        claimed = deviation - claim.path_deviation_m
+        yield Residual(f"{name}_deviation_claim_m", claimed, POSITION_ERROR_M)
