@@ -61,7 +61,7 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
 def line_deviation(
     robot: Robot, tool: Tool, rows: Array, point: Sequence[float], direction: Array
 ) -> float:
-    """Largest distance of the tool centre point from a line in joint-linear motion through rows [m].
+    """Largest distance of the tool centre point from a line, in motion through rows [m].
 
     Args:
         robot: the arm.

@@ -1,4 +1,4 @@
-"""Effort of reaching a posture: weighted joint travel, T 3.4.2 with the weights that T 5.2.2 asks for."""
+"""Effort of reaching a posture: weighted joint travel (T 3.4.2, with the weights of T 5.2.2)."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Misuse and broken parts, as exceptions with their data. "No solution" is none: see solution.py."""
+"""Misuse and broken parts, as exceptions with data. "No solution" is none: see solution.py."""
 
 from dataclasses import dataclass
 

@@ -164,7 +164,7 @@ def _target_faults(targets: Sequence[Target], reach_m: float) -> Iterable[Fault]
         elif math.hypot(*target.position_m) > UNIT_MISTAKE_REACHES * reach_m:
             yield Fault(
                 ("targets", k, "position_m"),
-                f"more than {UNIT_MISTAKE_REACHES:g} times the arm's reach away; positions are metres",
+                f"more than {UNIT_MISTAKE_REACHES:g} times the reach away; positions are metres",
             )
         if problem := _vector_problem(target.branch_direction, 3):
             yield Fault(("targets", k, "branch_direction"), problem)

@@ -1,4 +1,4 @@
-"""Every tolerance, with its unit and its reason. Nothing else in `solver` holds a bare threshold."""
+"""Every tolerance, with its unit and its reason. No other file holds a bare threshold."""
 
 from typing import Final
 
@@ -25,7 +25,7 @@ SAME_POSTURE_RAD: Final = 1e-9
 
 # --- Inverse kinematics -------------------------------------------------------------------------
 REACH_ROUNDING_M: Final = 1e-12
-"""A wrist centre beyond reach by less is at the edge [m]: rounding of sums of lengths near 0.5 m."""
+"""A wrist centre beyond reach by less is at the edge [m]: rounding of lengths near 0.5 m."""
 
 SINGULAR_WRIST: Final = 1e-10
 """sin(q5) below which q4 and q6 turn about one axis and q4 is set to zero. Above it the directions
@@ -36,7 +36,7 @@ RIGHT_ANGLE_RAD: Final = 1e-12
 
 # --- Approach frame and request -----------------------------------------------------------------
 PARALLEL_SINE: Final = 1e-6
-"""|b x p| / |p| below which "straight out from the base" does not define the zero approach angle."""
+"""|b x p| / |p| below which "straight out from the base" defines no zero of the angle."""
 
 SHORTEST_DIRECTION: Final = 1e-9
 """A branch direction shorter than this has no direction; directions may have any unit."""

@@ -45,12 +45,12 @@ class Survey:
 
 
 def sample_angles(n: int) -> Array:
-    """n approach angles over one turn, phi_k = -pi + 2 pi k / n, shape (n,) [rad]."""
+    """Approach angles over one turn, phi_k = -pi + 2 pi k / n, shape (n,) [rad]."""
     return np.asarray(-np.pi + 2 * np.pi * np.arange(n) / n)
 
 
 def sample_task(task: ApproachTask, tool_side: int, n: int) -> tuple[Array, Array, Array]:
-    """n angles, and the margins and efforts of all branches there, each of shape (8, n)."""
+    """Angles, shape (n,), and margins and efforts of all branches there, shape (8, n)."""
     angles = sample_angles(n)
     margins, efforts = np.empty((BRANCHES, n)), np.empty((BRANCHES, n))
     sample(task.for_kernels(tool_side), angles, margins, efforts)

@@ -16,7 +16,7 @@ def arc_end(task, branch, feasible, infeasible, rows):
     """The last feasible angle between a feasible and an infeasible one."""
     while abs(feasible - infeasible) > ARC_END_RAD:
         middle = (feasible + infeasible) / 2
-        if middle == feasible or middle == infeasible:
+        if middle in (feasible, infeasible):
             break
         if evaluate(task, middle, branch, rows)[0] >= 0:
             feasible = middle
@@ -27,7 +27,7 @@ def arc_end(task, branch, feasible, infeasible, rows):
 
 @kernel
 def extreme_margin(task, branch, low, high, sign, rows):
-    """Golden section for the largest (sign 1) or smallest (sign -1) margin; stops at a crossing of 0."""
+    """Golden section for the largest (sign 1) or smallest (-1) margin; stops where it crosses 0."""
     a, b = low, high
     x1, x2 = b - _GOLDEN * (b - a), a + _GOLDEN * (b - a)
     f1 = sign * evaluate(task, x1, branch, rows)[0]

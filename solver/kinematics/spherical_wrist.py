@@ -42,7 +42,7 @@ BRANCHES: Final = 8
 
 
 class WristGeometry(NamedTuple):
-    """What the kernels know of an arm: lengths [m], signs of the twists, offsets and middles [rad]."""
+    """What the kernels know of an arm: lengths [m], signs of twists, offsets, middles [rad]."""
 
     a1: float
     a2: float
@@ -66,8 +66,8 @@ class InverseSolutions:
     Attributes:
         joints: shape (n, 8, 6) [rad], each within half a turn of the middle of its limits. Where a
             branch is out of reach, its posture stretched or folded towards the pose.
-        reach_margin_m: shape (n, 4) by shoulder and elbow, branch // 2 [m]: how far the wrist centre
-            is inside the reach; negative: by how much it is outside.
+        reach_margin_m: shape (n, 4) by shoulder and elbow, branch // 2 [m]: how far the wrist
+            centre is inside the reach; negative: by how much it is outside.
         singular: shape (n, 8); the wrist is straight and q4 was set to zero.
     """
 
@@ -153,7 +153,7 @@ def wrap(angle: float) -> float:
 
 @kernel
 def arm_joints(g, cx, cy, cz, shoulder, elbow):
-    """theta1, theta2, theta3 and the reach margin [m] for a wrist centre, on one branch of the arm."""
+    """theta1, theta2, theta3 and the reach margin [m] for a wrist centre on one arm branch."""
     rho = math.hypot(cx, cy)
     x = math.sqrt(max(rho * rho - g.shoulder * g.shoulder, 0.0))
     if shoulder == 1:
@@ -173,7 +173,7 @@ def arm_joints(g, cx, cy, cz, shoulder, elbow):
 
 @kernel
 def wrist_joints(g, theta1, theta23, axes, wrist):
-    """theta4, theta5, theta6 and whether the wrist is singular; `axes` columns are the tool's x, y, z."""
+    """theta4, theta5, theta6, and whether the wrist is singular; `axes` has x, y, z as columns."""
     c1, s1 = math.cos(theta1), math.sin(theta1)
     c23, s23 = math.cos(theta23), math.sin(theta23)
     x3x, x3y, x3z = c1 * c23, s1 * c23, g.sign1 * s23
@@ -203,7 +203,7 @@ def wrist_joints(g, theta1, theta23, axes, wrist):
 
 @kernel
 def one_branch(g, position, axes, branch, q):
-    """Writes the joint vector of one branch to q, shape (6,) [rad]; returns the reach margin [m]."""
+    """Writes the posture of one branch to q, shape (6,) [rad]; returns the reach margin [m]."""
     cx = position[0] - g.tool_length * axes[0, 2]
     cy = position[1] - g.tool_length * axes[1, 2]
     cz = position[2] - g.tool_length * axes[2, 2]

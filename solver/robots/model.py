@@ -120,7 +120,7 @@ def parse_robot(document: bytes) -> Robot:
     """A robot from the bytes of a model file.
 
     Raises:
-        InvalidRobot: not TOML, a field missing, unknown or out of order, or home outside the limits.
+        InvalidRobot: not TOML, fields missing or unknown, or values that make no sense.
     """
     try:
         data = tomllib.loads(document.decode())

@@ -61,7 +61,7 @@ class TimedRows:
 
 
 def time_joint_line(robot: Robot, start: Array, end: Array, step_s: float) -> TimedRows:
-    """The straight line in joint space between two postures, all joints starting and ending together.
+    """The straight line in joint space between two postures, all joints in step.
 
     The joint that needs longest sets the pace. One row when start and end are the same.
     """
@@ -111,7 +111,7 @@ _FLAT_SLOPE = 1e-6  # [rad/m]: a joint that turns less does not limit the pace
 def _sample(
     robot: Robot, law: TrapezoidalLaw, path: Callable[[Array], Array], step_s: float
 ) -> TimedRows:
-    """Rows at even times; slowed down as a whole where curvature asks for more than the law knew."""
+    """Rows at even times; slowed down as a whole where curvature needs it."""
     n = max(2, math.ceil(law.duration_s / step_s))
     times = np.linspace(0.0, law.duration_s, n + 1)
     distances = law.position(times)

@@ -1,0 +1,30 @@
+"""Problems that several tests use: the thesis's data set 3, and seeded random targets."""
+
+import numpy as np
+
+from solver import Options, Problem, Robot, Target
+
+# F. Ouyang, thesis, 2012, program listing, data set 3 (cm there, m here).
+DATA_SET_3 = (
+    Target("1", (0.185, -0.057, 0.420), (-1, -1, 1)),
+    Target("2", (0.180, -0.070, 0.425), (-1, -1, 1)),
+    Target("3", (0.160, -0.083, 0.435), (-1, -1, 0)),
+    Target("4", (0.150, -0.089, 0.445), (-1, -1, 0)),
+    Target("5", (0.140, -0.095, 0.450), (-1, -1, 0)),
+)
+
+
+def data_set_3(robot: Robot, **options: object) -> Problem:
+    """Data set 3 with options by keyword."""
+    return Problem(robot, DATA_SET_3, options=Options(**options))  # type: ignore[arg-type]
+
+
+def random_targets(seed: int, count: int) -> list[Target]:
+    """Targets in a box in front of the arm, branches in every direction; many are unreachable."""
+    rng = np.random.default_rng(seed)
+    positions = rng.uniform((0.05, -0.3, 0.05), (0.38, 0.3, 0.5), (count, 3))
+    directions = rng.normal(size=(count, 3))
+    return [
+        Target(str(k), tuple(position), tuple(direction))
+        for k, (position, direction) in enumerate(zip(positions, directions, strict=True))
+    ]

@@ -1,0 +1,136 @@
+"""Every planned answer passes; an answer spoiled anywhere does not."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import solver
+from solver import (
+    Approach,
+    Options,
+    Plan,
+    Problem,
+    Robot,
+    Segment,
+    load_robot,
+    solve,
+    verify,
+    verify_plan,
+)
+from solver.registry import METHODS
+from solver.verification import judge
+from tests.solver.problems import data_set_3, random_targets
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("order", ["independent", "given"])
+def test_every_planned_answer_verifies(tabletop: Robot, method: str, order: str) -> None:
+    targets = random_targets(seed=31, count=40)
+    plan = solve(Problem(tabletop, targets, options=Options(method=method, order=order)))
+    results = verify_plan(plan)
+    assert len(results) == plan.planned >= 10
+    for target_id, verification in results.items():
+        assert verification.accepted, (target_id, verification.failures)
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    return solve(data_set_3(load_robot("tabletop"), method="ssas"))
+
+
+def _nudged(field: str, index: tuple[int, ...], amount: float) -> Callable[[Approach], Approach]:
+    def spoil(approach: Approach) -> Approach:
+        value = np.array(getattr(approach, field))
+        value[index] += amount
+        changes: dict[str, Any] = {field: value if value.ndim else float(value)}
+        return replace(approach, **changes)
+
+    return spoil
+
+
+def _nudged_row(row: int, amount: float) -> Callable[[Approach], Approach]:
+    def spoil(approach: Approach) -> Approach:
+        assert approach.trajectory is not None
+        joints = approach.trajectory.joints.copy()
+        joints[row, 1] += amount
+        return replace(approach, trajectory=replace(approach.trajectory, joints=joints))
+
+    return spoil
+
+
+def _faster(approach: Approach) -> Approach:
+    assert approach.trajectory is not None
+    segments = tuple(
+        Segment(s.name, s.start_s * 0.9, s.end_s * 0.9) for s in approach.trajectory.segments
+    )
+    times = approach.trajectory.times_s * 0.9
+    return replace(
+        approach, trajectory=replace(approach.trajectory, times_s=times, segments=segments)
+    )
+
+
+def _without_retreat(approach: Approach) -> Approach:
+    assert approach.trajectory is not None
+    segments = approach.trajectory.segments[:-1]
+    return replace(approach, trajectory=replace(approach.trajectory, segments=segments))
+
+
+SPOILERS: dict[str, Callable[[Approach], Approach]] = {
+    "approach angle": _nudged("approach_angle_rad", (), 1e-5),
+    "tool side": lambda a: replace(a, tool_side=-1),
+    "branch": lambda a: replace(a, branch=(a.branch or 0) ^ 1),
+    "thinning": _nudged("thinning_joints", (0,), 1e-5),
+    "standby": _nudged("standby_joints", (3,), 1e-5),
+    "a path row": _nudged("path_joints", (7, 2), 1e-5),
+    "not a number": _nudged("path_joints", (7, 2), np.nan),
+    "fewer rows": lambda a: replace(a, path_joints=np.asarray(a.path_joints)[::2]),
+    "effort": _nudged("effort", (), -1e-6),
+    "effort not a number": _nudged("effort", (), np.nan),
+    "margin": _nudged("margin_rad", (), 1e-6),
+    "deviation": _nudged("path_deviation_m", (), -2e-6),
+    "cut-in row": _nudged_row(-10, 1e-3),
+    "transfer row": _nudged_row(3, 0.05),
+    "too fast": _faster,
+    "no retreat": _without_retreat,
+    "nothing": lambda a: Approach(a.target_id, a.status, a.solver),
+    "another target": lambda a: replace(a, target_id="5"),
+    "unknown target": lambda a: replace(a, target_id="99"),
+}
+
+
+@pytest.mark.parametrize("spoil", SPOILERS.values(), ids=SPOILERS.keys())
+def test_spoiled_answers_do_not_verify(plan: Plan, spoil: Callable[[Approach], Approach]) -> None:
+    honest = plan.approaches[0]
+    assert verify(plan.problem, honest, plan.problem.start).accepted
+    spoiled = spoil(honest)
+    verification = verify(plan.problem, spoiled, plan.problem.start)
+    assert not verification.accepted
+    assert verification.failures
+    judged = judge(plan.problem, spoiled, plan.problem.start)
+    assert judged.status == "infeasible"
+    assert judged.reason is not None
+    assert judged.reason.code == "solver_failed"
+    assert verification.failures[0].name in judged.reason.detail
+
+
+def test_another_reference_does_not_verify(plan: Plan) -> None:
+    assert not verify(plan.problem, plan.approaches[1], plan.problem.start).accepted
+
+
+def test_limits_count_with_the_margin_asked_for(plan: Plan) -> None:
+    approach = plan.approaches[0]
+    assert approach.margin_rad is not None
+    for change, accepted in ((-1e-6, True), (1e-6, False)):
+        options = replace(plan.problem.options, limit_margin_rad=approach.margin_rad + change)
+        strict = replace(plan.problem, options=options)
+        assert verify(strict, approach, plan.problem.start).accepted is accepted
+
+
+def test_only_the_verifier_gives_the_status_planned() -> None:
+    sources = Path(solver.__file__).parent.rglob("*.py")
+    users = {file.name for file in sources if "status=PLANNED" in file.read_text()}
+    assert users == {"verification.py"}
