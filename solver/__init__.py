@@ -1,9 +1,11 @@
 """Prunus's solver: approach optimisation for blossoms on branches, without a server.
 
-    from solver import Problem, Target, load_robot, solve
-
-    problem = Problem(load_robot("tabletop"), [Target("1", (0.185, -0.057, 0.42), (-1, -1, 1))])
-    plan = solve(problem)
+    >>> from solver import Problem, Target, load_robot, solve
+    >>> target = Target("1", position_m=(0.185, -0.057, 0.42), branch_direction=(-1, -1, 1))
+    >>> plan = solve(Problem(load_robot("tabletop"), [target]))
+    >>> approach = plan.approaches[0]
+    >>> approach.status, approach.branch, round(approach.approach_angle_rad, 4)
+    ('planned', 2, 0.1281)
 
 Metres, radians and seconds in the robot's base frame throughout.
 """
