@@ -36,7 +36,7 @@ def test_answers_are_candidates_or_reasons(tabletop: Robot, name: str) -> None:
 @pytest.mark.parametrize("tool", ["laser", "scaffold"])
 def test_symmetric_tools_and_both_tools_are_planned(tabletop: Robot, name: str, tool: str) -> None:
     options = Options(method=name, symmetric_tool=True, norm="l2")
-    targets = random_targets(seed=52, count=12)
+    targets = random_targets(seed=52, count=24)
     plan = solve(Problem(tabletop, targets, tool=tool, options=options))
     assert plan.planned >= 2
     assert all(a.reason is None or a.reason.code != "solver_failed" for a in plan.approaches)
