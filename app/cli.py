@@ -1,0 +1,148 @@
+"""The command `prunus`. Heavy modules are imported by the commands that need them."""
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+
+BAD_REQUEST = 2
+
+cli = typer.Typer(
+    name="prunus",
+    help="Decides how a robot arm reaches for blossoms in a tree.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+def main() -> None:
+    """Entry point of the command."""
+    cli()
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from app.version import prunus_version
+
+        typer.echo(prunus_version())
+        raise typer.Exit
+
+
+@cli.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show it.")
+    ] = False,
+) -> None:
+    """Decides how a robot arm reaches for blossoms in a tree."""
+
+
+@cli.command()
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on [127.0.0.1].")] = None,
+    port: Annotated[
+        int | None, typer.Option(min=0, max=65535, help="Port; 0 takes a free one [8000].")
+    ] = None,
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Folder of the database [prunus-data].")
+    ] = None,
+) -> None:
+    """Start the service; PRUNUS_... in the environment sets what is not given."""
+    from pydantic import ValidationError
+
+    from app.serving import CannotServe, run_service
+    from app.settings import Settings
+
+    given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir}
+    try:
+        settings = Settings(**{name: value for name, value in given.items() if value is not None})
+        run_service(settings)
+    except ValidationError as error:
+        names = ", ".join(f"PRUNUS_{entry['loc'][0]}".upper() for entry in error.errors())
+        _fail(f"settings that make no sense: {names}", code=1)
+    except CannotServe as error:
+        _fail(str(error), code=1)
+
+
+@cli.command()
+def plan(
+    request_file: Annotated[
+        Path, typer.Argument(metavar="REQUEST.json", help="The body of POST /v1/plans.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Where the plan's JSON goes.")
+    ] = None,
+    degrees: Annotated[
+        bool,
+        typer.Option(
+            "--degrees",
+            help="start_joints in the request are in degrees. All other angles have their unit "
+            "in their name and stay as they are; so does the answer.",
+        ),
+    ] = False,
+) -> None:
+    """Plan in this process, without a service, and print a table in degrees and centimetres.
+
+    Exits with 0 when there is a plan, infeasible targets or not, and with 2 on a bad request.
+    """
+    from pydantic import ValidationError
+    from rich.console import Console
+
+    from app.errors import structural_faults
+    from app.services.planning import plan_request
+    from solver import InvalidProblem
+
+    try:
+        answer, body = plan_request(request_file.read_bytes(), degrees=degrees)
+        if output is not None:
+            output.write_bytes(body + b"\n")
+    except OSError as error:
+        _fail(f"{error.filename}: {error.strerror}")
+    except ValidationError as error:
+        _fail(*(f"{fault.pointer}: {fault.detail}" for fault in structural_faults(error)))
+    except InvalidProblem as error:
+        _fail(*(f"{fault.pointer}: {fault.detail}" for fault in error.faults))
+    from app.plan_table import print_plan
+
+    print_plan(answer, Console())
+
+
+@cli.command()
+def demo(
+    output: Annotated[Path, typer.Option(help="Where the pictures go.")] = Path("prunus-demo"),
+) -> None:
+    """Plan the thesis's data set 3 over HTTP, and draw it."""
+    from app.demo import run_demo
+
+    raise typer.Exit(run_demo(output))
+
+
+@cli.command()
+def export_openapi(
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Where it goes; default: standard output.")
+    ] = None,
+) -> None:
+    """Write the OpenAPI document."""
+    import json
+
+    from app.main import create_app
+    from app.settings import Settings
+
+    document = create_app(Settings()).openapi()
+    text = json.dumps(document, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+    if output is None:
+        sys.stdout.write(text)
+        return
+    try:
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        _fail(f"{error.filename}: {error.strerror}")
+
+
+def _fail(*lines: str, code: int = BAD_REQUEST) -> NoReturn:
+    for line in lines:
+        typer.echo(line, err=True)
+    raise typer.Exit(code)

@@ -1,0 +1,107 @@
+"""Errors as RFC 9457 problem details. What a client sent is never sent back."""
+
+import http
+from collections.abc import Mapping, Sequence
+
+import orjson
+from fastapi import FastAPI, Request, Response
+from pydantic import ValidationError
+from starlette.exceptions import HTTPException
+
+from app.schemas.problem_details import MEDIA_TYPE
+from solver import Fault, InvalidProblem
+
+MOST_FAULTS = 100
+LONGEST_STEP = 100
+
+
+class ProblemError(Exception):
+    """An error that a client gets to see.
+
+    Attributes:
+        code: what it is, for programs; the end of the problem's `type`.
+    """
+
+    def __init__(
+        self, status: int, code: str, detail: str, *, faults: Sequence[Fault] = ()
+    ) -> None:
+        super().__init__(detail)
+        self.status = status
+        self.code = code
+        self.detail = detail
+        self.faults = tuple(faults)
+
+
+def invalid_request(faults: Sequence[Fault]) -> ProblemError:
+    """The 422 for these faults."""
+    return ProblemError(
+        422, "invalid_request", "The request makes no sense; see errors.", faults=faults
+    )
+
+
+def structural_faults(error: ValidationError) -> tuple[Fault, ...]:
+    """The faults of a body that is not what its schema says, without the values."""
+    if error.error_count() > MOST_FAULTS:
+        return (Fault((), f"has {error.error_count()} fields that are not what they must be"),)
+    entries = error.errors(include_url=False, include_input=False, include_context=False)
+    return tuple(Fault(_clipped(entry["loc"]), entry["msg"]) for entry in entries)
+
+
+def _clipped(path: Sequence[str | int]) -> tuple[str | int, ...]:
+    # An unknown field's name is the client's own text; a long one is pointed to by its parent.
+    long = (i for i, step in enumerate(path) if len(str(step)) > LONGEST_STEP)
+    return tuple(path[: next(long, len(path))])
+
+
+def problem_response(
+    status: int,
+    code: str,
+    detail: str,
+    *,
+    faults: Sequence[Fault] = (),
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """A problem as a response."""
+    body = {
+        "type": f"urn:prunus:problem:{code}",
+        "title": code.replace("_", " ").capitalize(),
+        "status": status,
+        "detail": detail,
+        "errors": [
+            {"pointer": fault.pointer, "detail": fault.detail} for fault in faults[:MOST_FAULTS]
+        ],
+    }
+    # orjson refuses lone surrogates, which a pointer cannot hold: the JSON parser refused them.
+    return Response(orjson.dumps(body), status, headers=headers, media_type=MEDIA_TYPE)
+
+
+def install_error_handlers(app: FastAPI) -> None:
+    """Make every error of the application a problem."""
+
+    @app.exception_handler(ProblemError)
+    async def expected(_: Request, error: ProblemError) -> Response:
+        headers = {"Retry-After": "1"} if error.status == 503 else None
+        return problem_response(
+            error.status, error.code, error.detail, faults=error.faults, headers=headers
+        )
+
+    @app.exception_handler(InvalidProblem)
+    async def invalid(_: Request, error: InvalidProblem) -> Response:
+        problem = invalid_request(error.faults)
+        return problem_response(problem.status, problem.code, problem.detail, faults=problem.faults)
+
+    @app.exception_handler(ValidationError)
+    async def malformed(_: Request, error: ValidationError) -> Response:
+        problem = invalid_request(structural_faults(error))
+        return problem_response(problem.status, problem.code, problem.detail, faults=problem.faults)
+
+    @app.exception_handler(HTTPException)
+    async def protocol(_: Request, error: HTTPException) -> Response:
+        phrase = http.HTTPStatus(error.status_code).phrase
+        code = phrase.lower().replace(" ", "_")
+        return problem_response(error.status_code, code, f"{phrase}.", headers=error.headers)
+
+    @app.exception_handler(Exception)
+    async def unexpected(_: Request, error: Exception) -> Response:
+        # Starlette raises the error again behind this answer, and the server logs it in full.
+        return problem_response(500, "internal_error", "Something broke; the log has it.")

@@ -1,0 +1,80 @@
+"""The application: routes, errors, limits, and what lives as long as it does."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic.json_schema import models_json_schema
+from starlette.concurrency import run_in_threadpool
+
+from app.body_limit import BodyLimitMiddleware
+from app.errors import install_error_handlers
+from app.routers import health, plans, robots
+from app.schemas.problem_details import ProblemDetails
+from app.schemas.requests import PlanRequest
+from app.services.solving import SolvingService
+from app.settings import Settings
+from app.store import PlanStore
+from app.version import prunus_version
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """The application; it touches nothing outside before it is started."""
+    app = FastAPI(
+        title="Prunus",
+        version=prunus_version(),
+        description="Decides how a robot arm reaches for blossoms in a tree. "
+        "Metres, radians and seconds in the robot's base frame throughout.",
+        lifespan=_lifespan,
+        # The stock pages load their scripts from elsewhere; this must work offline.
+        docs_url=None,
+        redoc_url=None,
+    )
+    app.state.settings = settings
+    app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
+    install_error_handlers(app)
+    for router in (plans.router, robots.router, health.router):
+        app.include_router(router)
+    # FastAPI's documented way to extend the document is to replace this method.
+    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    settings: Settings = app.state.settings
+    app.state.store = await run_in_threadpool(PlanStore, settings.resolved_database_url)
+    app.state.solving = SolvingService(settings.workers)
+    try:
+        yield
+    finally:
+        await run_in_threadpool(app.state.solving.close)
+        await run_in_threadpool(app.state.store.close)
+
+
+def _openapi(app: FastAPI) -> dict[str, Any]:
+    document = get_openapi(
+        title=app.title, version=app.version, description=app.description, routes=app.routes
+    )
+    # Bodies are parsed by hand, for strictness and for the problem form; so they are added here.
+    for model, mode in ((PlanRequest, "validation"), (ProblemDetails, "serialization")):
+        _, definitions = models_json_schema(
+            [(model, mode)],  # type: ignore[list-item]
+            ref_template="#/components/schemas/{model}",
+        )
+        document["components"]["schemas"].update(definitions["$defs"])
+    for path in document["paths"].values():
+        for operation in path.values():
+            # FastAPI's own form of a validation error, which is never sent.
+            _drop_stock_validation_error(operation["responses"])
+    for name in ("HTTPValidationError", "ValidationError"):
+        document["components"]["schemas"].pop(name, None)
+    return document
+
+
+def _drop_stock_validation_error(responses: dict[str, Any]) -> None:
+    content = responses.get("422", {}).get("content", {})
+    if "application/json" in content:
+        del responses["422"]

@@ -1,0 +1,1 @@
+"""Pictures of plans, with Matplotlib and without a screen."""

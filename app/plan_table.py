@@ -1,0 +1,99 @@
+"""A plan as a table for people: degrees and millimetres, from the JSON answer."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from rich.console import Console
+from rich.table import Table
+
+HEADINGS: Final = (
+    "target",
+    "status",
+    "approach angle °",
+    "effort",
+    "nearest limit °",
+    "deviation mm",
+    "solver",
+    "time ms",
+)
+TIME_COLUMN: Final = HEADINGS.index("time ms")
+
+
+def plan_rows(plan: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """One row of text a target, in the order of HEADINGS."""
+    return [_row(approach) for approach in plan["approaches"]]
+
+
+def print_plan(plan: Mapping[str, Any], console: Console) -> None:
+    """Print the plan, its postures, and a reason for every target refused."""
+    options = plan["options"]
+    title = f"{plan['robot']} with {plan['tool']}: {options['method']}, order {options['order']}"
+    console.print(_table(title, HEADINGS, plan_rows(plan)))
+    planned = [approach for approach in plan["approaches"] if approach["status"] == "planned"]
+    if planned:
+        joints = range(1, len(planned[0]["thinning_joints"]) + 1)
+        for name in ("thinning", "standby"):
+            rows = [
+                (approach["target_id"], *map(_degrees, approach[f"{name}_joints"]))
+                for approach in planned
+            ]
+            headings = ("target", *(f"joint {i} °" for i in joints))
+            console.print(_table(f"{name} posture", headings, rows))
+    for approach in plan["approaches"]:
+        if "reason" in approach:
+            reason = approach["reason"]
+            console.print(
+                f"{approach['target_id']}: {reason['code']}, {reason['detail']}",
+                markup=False,
+                highlight=False,
+            )
+    console.print(_totals(plan), highlight=False)
+
+
+def markdown_table(plan: Mapping[str, Any]) -> str:
+    """The rows as a Markdown table."""
+    lines = [HEADINGS, tuple("---" for _ in HEADINGS), *plan_rows(plan)]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _row(approach: Mapping[str, Any]) -> tuple[str, ...]:
+    solver = approach["solver"]
+    head = (approach["target_id"], approach["status"])
+    tail = (solver["method"], f"{solver['elapsed_s'] * 1000:.1f}")
+    if approach["status"] != "planned":
+        return (*head, "", "", "", "", *tail)
+    return (
+        *head,
+        _degrees(approach["approach_angle_rad"]),
+        f"{approach['effort']:.4f}",
+        _degrees(approach["margin_rad"]),
+        f"{approach['path_deviation_m'] * 1000:.4f}",
+        *tail,
+    )
+
+
+def _totals(plan: Mapping[str, Any]) -> str:
+    summary, norm = plan["summary"], plan["options"]["norm"]
+    unit = {"l1": "rad", "l2": "rad²"}.get(norm, norm)
+    return (
+        f"{summary['planned']} planned, {summary['infeasible']} infeasible, "
+        f"total effort {summary['total_effort']:.4f} {unit} ({norm}), "
+        f"start at ({', '.join(map(_degrees, plan['start_joints']))})°, "
+        f"stand-off {plan['options']['standoff_m'] * 100:g} cm, "
+        f"{summary['elapsed_s'] * 1000:.0f} ms"
+    )
+
+
+def _degrees(angle_rad: float) -> str:
+    return f"{math.degrees(angle_rad):.2f}"
+
+
+def _table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    table = Table(title=title, title_justify="left")
+    for heading in headings:
+        words = heading in ("target", "status", "solver")
+        table.add_column(heading, justify="left" if words else "right", no_wrap=words)
+    for row in rows:
+        table.add_row(*row)
+    return table

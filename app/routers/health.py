@@ -1,0 +1,38 @@
+"""Whether the service lives, and whether it can work."""
+
+from fastapi import APIRouter, Request
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.concurrency import run_in_threadpool
+
+from app.errors import ProblemError
+from app.routers.plans import problem_answers
+from app.schemas.answers import HealthAnswer
+from app.services.solving import SolvingService
+from app.store import PlanStore
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", operation_id="getHealth", summary="The process answers")
+async def get_health() -> HealthAnswer:
+    """Needs nothing but the event loop."""
+    return HealthAnswer(status="ok")
+
+
+@router.get(
+    "/readyz",
+    operation_id="getReadiness",
+    summary="The solver is warm and the store answers",
+    responses=problem_answers(503),
+)
+async def get_readiness(request: Request) -> HealthAnswer:
+    """503 until then."""
+    solving: SolvingService = request.app.state.solving
+    store: PlanStore = request.app.state.store
+    if not await solving.is_ready():
+        raise ProblemError(503, "not_ready", "The solver is warming up.")
+    try:
+        await run_in_threadpool(store.check)
+    except SQLAlchemyError:
+        raise ProblemError(503, "not_ready", "The store does not answer.") from None
+    return HealthAnswer(status="ready")

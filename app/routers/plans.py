@@ -1,0 +1,121 @@
+"""Plans: made from a batch of targets, kept, and read again."""
+
+import uuid
+from collections.abc import Iterator
+from typing import Any
+
+import orjson
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import StreamingResponse
+from starlette.concurrency import run_in_threadpool
+
+from app.errors import ProblemError, invalid_request
+from app.schemas.answers import PlanAnswer
+from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
+from app.services.solving import SolvingService
+from app.services.wire import parse_request, problem_from_wire
+from app.store import PlanStore
+from solver import Fault, Problem
+
+NDJSON = "application/x-ndjson"
+# Python's own phrases for these change from version to version.
+DESCRIPTIONS = {
+    404: "Unknown",
+    413: "Body over the size limit",
+    415: "Body not JSON by its media type",
+    422: "Request that makes no sense",
+    500: "Fault of the service",
+    503: "Not available now",
+}
+
+router = APIRouter(prefix="/v1/plans", tags=["plans"])
+
+
+def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The OpenAPI descriptions of these errors."""
+    content = {MEDIA_TYPE: {"schema": {"$ref": f"#/components/schemas/{ProblemDetails.__name__}"}}}
+    return {
+        status: {"content": content, "description": DESCRIPTIONS[status]} for status in statuses
+    }
+
+
+@router.post(
+    "",
+    operation_id="createPlan",
+    status_code=201,
+    summary="Plan an approach for every target",
+    responses={
+        201: {
+            "model": PlanAnswer,
+            "headers": {"Location": {"schema": {"type": "string"}}},
+        },
+        **problem_answers(413, 415, 422, 500, 503),
+    },
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {
+                "application/json": {"schema": {"$ref": "#/components/schemas/PlanRequest"}}
+            },
+        }
+    },
+)
+async def create_plan(request: Request) -> Response:
+    """Targets that cannot be reached come back infeasible, with a reason."""
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type != "application/json":
+        raise ProblemError(415, "unsupported_media_type", "The body must be application/json.")
+    body = await request.body()
+    limit: int = request.app.state.settings.sync_targets_limit
+    problem, normalised = await run_in_threadpool(_read, body, limit)
+    plan_id = uuid.uuid4().hex
+    solving: SolvingService = request.app.state.solving
+    answer = await solving.solve(problem, plan_id)
+    store: PlanStore = request.app.state.store
+    await run_in_threadpool(
+        store.add, plan_id, robot=problem.robot.name, request=normalised, answer=answer.decode()
+    )
+    return Response(
+        answer,
+        status_code=201,
+        media_type="application/json",
+        headers={"Location": f"/v1/plans/{plan_id}"},
+    )
+
+
+def _read(body: bytes, targets_limit: int) -> tuple[Problem, str]:
+    request = parse_request(body)
+    if len(request.targets) > targets_limit:
+        detail = f"more than {targets_limit} targets: asynchronous jobs are not available yet"
+        raise invalid_request([Fault(("targets",), detail)])
+    return problem_from_wire(request), request.model_dump_json()
+
+
+@router.get(
+    "/{plan_id}",
+    operation_id="getPlan",
+    summary="The plan again",
+    responses={
+        200: {
+            "model": PlanAnswer,
+            "content": {NDJSON: {"schema": {"type": "string"}}},
+            "description": f"With Accept: {NDJSON} its approaches, one a line",
+        },
+        **problem_answers(404, 500),
+    },
+)
+async def get_plan(plan_id: str, request: Request) -> Response:
+    """As it was answered, byte for byte."""
+    store: PlanStore = request.app.state.store
+    answer = await run_in_threadpool(store.answer, plan_id)
+    if answer is None:
+        raise ProblemError(404, "not_found", "There is no plan of this id.")
+    headers = {"Vary": "Accept"}
+    if NDJSON in request.headers.get("accept", "").lower():
+        return StreamingResponse(_lines(answer), media_type=NDJSON, headers=headers)
+    return Response(answer, media_type="application/json", headers=headers)
+
+
+def _lines(answer: str) -> Iterator[bytes]:
+    for approach in orjson.loads(answer)["approaches"]:
+        yield orjson.dumps(approach, option=orjson.OPT_APPEND_NEWLINE)

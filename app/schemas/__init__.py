@@ -1,0 +1,1 @@
+"""Pydantic models of the wire, used at the edge only."""

@@ -1,0 +1,176 @@
+"""Answer bodies, for the OpenAPI document; the answers themselves are made by `app.services.wire`.
+
+Clients must expect new fields and new values of every status, code and name.
+"""
+
+from pydantic import MISSING, BaseModel, Field
+
+
+class ResolvedOptions(BaseModel):
+    """The options with every default filled in."""
+
+    method: str
+    order: str
+    norm: str
+    weights: str
+    joint_weights: list[float] | MISSING = Field(default=MISSING, description="if given")
+    standoff_m: float
+    path_points: int
+    straightness_m: float
+    dwell_s: float
+    limit_margin_rad: float
+    symmetric_tool: bool
+    strike_zone_m: float
+    tilt_tolerance_rad: float
+    samples: int
+    seed: int
+    certify: bool
+    include: list[str]
+
+
+class SolverAnswer(BaseModel):
+    """What the method did for one target."""
+
+    method: str
+    elapsed_s: float
+    iterations: int
+    status: str
+
+
+class ReasonAnswer(BaseModel):
+    """Why a target has no approach."""
+
+    code: str
+    detail: str
+    joint: str | MISSING = MISSING
+    margin_rad: float | MISSING = MISSING
+    margin_m: float | MISSING = MISSING
+
+
+class TransferAnswer(BaseModel):
+    """Motion from the previous standby (or the start) to this standby."""
+
+    planner: str
+    joints: list[list[float]]
+    length_rad: float
+
+
+class SegmentAnswer(BaseModel):
+    """A named part of a trajectory: transfer, cut_in, dwell, retreat."""
+
+    name: str
+    start_s: float
+    end_s: float
+
+
+class TrajectoryAnswer(BaseModel):
+    """Timed motion for one target, joint-linear between rows."""
+
+    times_s: list[float]
+    joints: list[list[float]]
+    segments: list[SegmentAnswer]
+
+
+class ApproachAnswer(BaseModel):
+    """The answer for one target: planned, or infeasible with a reason."""
+
+    target_id: str
+    status: str
+    approach_angle_rad: float | MISSING = MISSING
+    tool_side: int | MISSING = MISSING
+    branch: int | MISSING = MISSING
+    thinning_joints: list[float] | MISSING = MISSING
+    standby_joints: list[float] | MISSING = MISSING
+    path_joints: list[list[float]] | MISSING = Field(
+        default=MISSING, description="the first row is standby, the last thinning"
+    )
+    path_deviation_m: float | MISSING = MISSING
+    effort: float | MISSING = MISSING
+    margin_rad: float | MISSING = MISSING
+    solver: SolverAnswer
+    transfer: TransferAnswer | MISSING = MISSING
+    trajectory: TrajectoryAnswer | MISSING = MISSING
+    reason: ReasonAnswer | MISSING = MISSING
+
+
+class SummaryAnswer(BaseModel):
+    """The plan in four numbers."""
+
+    planned: int
+    infeasible: int
+    total_effort: float
+    elapsed_s: float
+
+
+class PlanAnswer(BaseModel):
+    """A plan, with what it was made from as resolved."""
+
+    id: str
+    robot: str
+    tool: str
+    version: str = Field(description="of Prunus")
+    model_version: str = Field(description="digest of the robot's model file")
+    start_joints: list[float]
+    joint_weights: list[float]
+    options: ResolvedOptions
+    approaches: list[ApproachAnswer] = Field(description="in execution order")
+    summary: SummaryAnswer
+
+
+class JointAnswer(BaseModel):
+    """A joint: its link's Denavit-Hartenberg row (classic convention) and its limits."""
+
+    name: str
+    a_m: float
+    alpha_rad: float
+    d_m: float
+    offset_rad: float
+    lower_rad: float
+    upper_rad: float
+    velocity_rad_s: float
+    acceleration_rad_s2: float
+
+
+class ToolAnswer(BaseModel):
+    """An end-effector, and how far the arm reaches with it at most."""
+
+    name: str
+    description: str
+    length_m: float
+    reach_m: float
+
+
+class RobotSummary(BaseModel):
+    """A robot in the list."""
+
+    name: str
+    model: str
+    model_version: str
+    description: str
+    tools: list[str]
+
+
+class RobotsAnswer(BaseModel):
+    """All robots."""
+
+    robots: list[RobotSummary]
+
+
+class RobotAnswer(BaseModel):
+    """One robot in full."""
+
+    name: str
+    model: str
+    model_version: str
+    description: str
+    source: str
+    joints: list[JointAnswer]
+    tools: list[ToolAnswer]
+    default_tool: str
+    home_joints: list[float]
+
+
+class HealthAnswer(BaseModel):
+    """How the service is."""
+
+    status: str

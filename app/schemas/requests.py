@@ -1,0 +1,78 @@
+"""Request bodies. Structure and types only: what a value may be, `solver.Problem` decides."""
+
+from typing import Annotated
+
+from pydantic import MISSING, BaseModel, ConfigDict, Field
+
+# Lists stop at their first fault: millions of faults in one body would fill the memory.
+Numbers = Annotated[list[float], Field(fail_fast=True)]
+Vector = Annotated[Numbers, Field(description="three numbers")]
+JointVector = Annotated[
+    Numbers, Field(description="in joint order; radians (revolute) or metres (prismatic)")
+]
+
+
+class _Body(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class TargetBody(_Body):
+    """A blossom to remove."""
+
+    id: str = Field(description="not empty, once in a batch")
+    position_m: Vector
+    branch_direction: Vector = Field(description="along the branch, any length above zero")
+    position_std_m: float | MISSING = Field(default=MISSING, description="not available yet")
+
+
+class SceneBranchBody(_Body):
+    """A branch as a chain of capsules."""
+
+    id: str
+    points_m: Annotated[list[Vector], Field(fail_fast=True)]
+    radius_m: float
+
+
+class SceneBody(_Body):
+    """What stands around the arm."""
+
+    branches: Annotated[list[SceneBranchBody], Field(fail_fast=True)] | MISSING = MISSING
+
+
+class OptionsBody(_Body):
+    """How to solve; absent fields take their defaults, which the answer shows."""
+
+    method: str | MISSING = MISSING
+    order: str | MISSING = MISSING
+    norm: str | MISSING = MISSING
+    weights: str | MISSING = MISSING
+    joint_weights: Numbers | MISSING = Field(
+        default=MISSING, description="one a joint; replaces `weights`"
+    )
+    standoff_m: float | MISSING = MISSING
+    path_points: int | MISSING = MISSING
+    straightness_m: float | MISSING = MISSING
+    dwell_s: float | MISSING = MISSING
+    limit_margin_rad: float | MISSING = MISSING
+    symmetric_tool: bool | MISSING = MISSING
+    strike_zone_m: float | MISSING = MISSING
+    tilt_tolerance_rad: float | MISSING = MISSING
+    samples: int | MISSING = MISSING
+    seed: int | MISSING = MISSING
+    certify: bool | MISSING = MISSING
+    include: Annotated[list[str], Field(fail_fast=True)] | MISSING = Field(
+        default=MISSING,
+        description="any of path, transfer, trajectory; default: all up to 50 targets, then path",
+    )
+
+
+class PlanRequest(_Body):
+    """A batch of targets for one robot."""
+
+    robot: str
+    tool: str | MISSING = Field(default=MISSING, description="default: the robot's own")
+    frame: str | MISSING = Field(default=MISSING, description="only `base` for now")
+    start_joints: JointVector | MISSING = Field(default=MISSING, description="default: home")
+    targets: Annotated[list[TargetBody], Field(fail_fast=True)]
+    scene: SceneBody | MISSING = Field(default=MISSING, description="not available yet")
+    options: OptionsBody | MISSING = MISSING

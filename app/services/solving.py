@@ -1,0 +1,120 @@
+"""Solving in other processes, so that the event loop stays free and a crash stays outside."""
+
+import asyncio
+import logging
+import multiprocessing
+import os
+import signal
+import threading
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.connection import Connection
+
+import orjson
+
+from app.errors import ProblemError
+from app.services.wire import plan_to_wire
+from solver import Problem, solve
+
+logger = logging.getLogger(__name__)
+
+
+def solve_to_json(problem: Problem, plan_id: str) -> bytes:
+    """The answer's body; runs in a worker."""
+    return orjson.dumps(plan_to_wire(solve(problem), plan_id))
+
+
+def _start_worker(lifeline: Connection) -> None:
+    # Ctrl-C reaches the whole process group; the service decides when its workers end.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_service, args=(lifeline,), daemon=True).start()
+    from solver.warm_up import warm_up
+
+    warm_up()
+
+
+def _end_with_service(lifeline: Connection) -> None:
+    # Nothing is ever sent: it ends when the service closes its end, or is killed.
+    lifeline.poll(None)
+    os._exit(0)
+
+
+def _is_warm() -> bool:
+    return True
+
+
+class _Pool:
+    """An executor and the pipe its workers hang on."""
+
+    def __init__(self, workers: int) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._far_end, self._near_end = context.Pipe(duplex=False)
+        self.executor = ProcessPoolExecutor(
+            workers, mp_context=context, initializer=_start_worker, initargs=(self._far_end,)
+        )
+        self.warming: list[Future[bool]] = [self.executor.submit(_is_warm) for _ in range(workers)]
+
+    @property
+    def is_warm(self) -> bool:
+        return all(future.done() and not future.exception() for future in self.warming)
+
+    @property
+    def is_lost(self) -> bool:
+        return any(future.done() and future.exception() for future in self.warming)
+
+    def close(self) -> None:
+        self._near_end.close()
+        self.executor.shutdown(wait=True, cancel_futures=True)
+        self._far_end.close()
+
+
+class SolvingService:
+    """A pool of worker processes that is rebuilt when it breaks."""
+
+    def __init__(self, workers: int) -> None:
+        self._workers = workers
+        self._pool = _Pool(workers)
+        self._lock = threading.Lock()
+
+    async def is_ready(self) -> bool:
+        """Whether the workers are there and warm; a pool that died warming up is started again."""
+        if self._pool.is_lost:
+            await asyncio.to_thread(self._replace, self._pool)
+        return self._pool.is_warm
+
+    async def solve(self, problem: Problem, plan_id: str) -> bytes:
+        """The answer's body for a problem.
+
+        Raises:
+            ProblemError: 503, the worker died over it.
+        """
+        pool = self._pool
+        try:
+            try:
+                future = pool.executor.submit(solve_to_json, problem, plan_id)
+            except BrokenProcessPool:
+                # A worker died idle: nothing was lost, so the request need not know.
+                pool = await asyncio.to_thread(self._replace, pool)
+                future = pool.executor.submit(solve_to_json, problem, plan_id)
+            return await asyncio.wrap_future(future)
+        except BrokenProcessPool:
+            await asyncio.to_thread(self._replace, pool)
+            raise ProblemError(
+                503, "solver_unavailable", "The solver was lost; it has been started again."
+            ) from None
+        except asyncio.CancelledError:
+            # Only the server's shutdown cancels a request; its client still gets an answer.
+            raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+
+    def _replace(self, broken: _Pool) -> _Pool:
+        with self._lock:
+            if self._pool is broken:
+                logger.error("a solver process died; the pool is rebuilt")
+                self._pool = _Pool(self._workers)
+                broken.close()
+            return self._pool
+
+    def close(self) -> None:
+        """End the workers at once, whatever they do."""
+        with self._lock:
+            self._pool.close()

@@ -1,0 +1,208 @@
+"""Between the wire and the solver: one code path for the service and the command line.
+
+Fields that are absent are left out, in both directions; nothing is ever null.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.schemas.requests import PlanRequest
+from app.version import prunus_version
+from solver import (
+    Approach,
+    Fault,
+    InvalidProblem,
+    Options,
+    Plan,
+    Problem,
+    Reason,
+    Robot,
+    Target,
+    Trajectory,
+    Transfer,
+    UnknownRobot,
+    load_robot,
+)
+
+BASE_FRAME = "base"
+
+
+def parse_request(body: bytes) -> PlanRequest:
+    """The request in a JSON document.
+
+    Raises:
+        pydantic.ValidationError: not JSON, or not the schema's structure.
+    """
+    return PlanRequest.model_validate_json(body)
+
+
+def problem_from_wire(request: PlanRequest) -> Problem:
+    """The problem that a request asks for.
+
+    Raises:
+        InvalidProblem: with every fault found; no fault repeats what was sent.
+    """
+    given: Mapping[str, Any] = request.model_dump()
+    faults = list(_not_available(given))
+    try:
+        problem = _problem(given, load_robot(request.robot))
+    except UnknownRobot as error:
+        faults.append(Fault(("robot",), f"unknown robot; known: {', '.join(error.known)}"))
+    except InvalidProblem as error:
+        faults += (_without_value(fault, given) for fault in error.faults)
+    if faults:
+        raise InvalidProblem(tuple(faults))
+    return problem
+
+
+def _problem(given: Mapping[str, Any], robot: Robot) -> Problem:
+    targets = [
+        Target(target["id"], tuple(target["position_m"]), tuple(target["branch_direction"]))
+        for target in given["targets"]
+    ]
+    options = Options(**given.get("options", {}))
+    return Problem(robot, targets, given.get("tool"), given.get("start_joints"), options)
+
+
+def _not_available(given: Mapping[str, Any]) -> list[Fault]:
+    faults = []
+    if given.get("frame", BASE_FRAME) != BASE_FRAME:
+        faults.append(Fault(("frame",), f"only {BASE_FRAME!r} is available yet"))
+    if "scene" in given:
+        faults.append(Fault(("scene",), "obstacles are not available yet"))
+    faults += (
+        Fault(("targets", k, "position_std_m"), "uncertain positions are not available yet")
+        for k, target in enumerate(given["targets"])
+        if "position_std_m" in target
+    )
+    return faults
+
+
+def _without_value(fault: Fault, given: Mapping[str, Any]) -> Fault:
+    value: Any = given
+    try:
+        for step in fault.path:
+            value = value[step]
+    except (KeyError, IndexError, TypeError):
+        return fault
+    if not isinstance(value, str) or not value:
+        return fault
+    return Fault(fault.path, fault.detail.replace(repr(value), "'…'"))
+
+
+def plan_to_wire(plan: Plan, plan_id: str) -> dict[str, Any]:
+    """A plan as JSON values: the body of the answer, and the file that `prunus plan` writes."""
+    problem = plan.problem
+    include = frozenset(problem.options.include or ())
+    return {
+        "id": plan_id,
+        "robot": problem.robot.name,
+        "tool": problem.mounted_tool.name,
+        "version": prunus_version(),
+        "model_version": problem.robot.version,
+        "start_joints": [_number(value) for value in problem.start],
+        "joint_weights": [_number(value) for value in problem.joint_weights],
+        "options": _options(problem.options),
+        "approaches": [_approach(approach, include) for approach in plan.approaches],
+        "summary": {
+            "planned": plan.planned,
+            "infeasible": plan.infeasible,
+            "total_effort": _number(plan.total_effort),
+            "elapsed_s": _number(plan.elapsed_s),
+        },
+    }
+
+
+def _options(options: Options) -> dict[str, Any]:
+    values = {entry.name: getattr(options, entry.name) for entry in fields(options)}
+    present = {name: value for name, value in values.items() if value is not None}
+    return {
+        name: list(value) if isinstance(value, tuple) else value for name, value in present.items()
+    }
+
+
+def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
+    path = approach.path_joints if "path" in include else None
+    transfer = approach.transfer if "transfer" in include else None
+    trajectory = approach.trajectory if "trajectory" in include else None
+    solver = approach.solver
+    return _present(
+        target_id=approach.target_id,
+        status=approach.status,
+        approach_angle_rad=_optional(approach.approach_angle_rad),
+        tool_side=None if approach.tool_side is None else int(approach.tool_side),
+        branch=None if approach.branch is None else int(approach.branch),
+        thinning_joints=_numbers(approach.thinning_joints),
+        standby_joints=_numbers(approach.standby_joints),
+        path_joints=_numbers(path),
+        path_deviation_m=_optional(approach.path_deviation_m),
+        effort=_optional(approach.effort),
+        margin_rad=_optional(approach.margin_rad),
+        solver={
+            "method": solver.method,
+            "elapsed_s": _number(solver.elapsed_s),
+            "iterations": int(solver.iterations),
+            "status": solver.status,
+        },
+        transfer=None if transfer is None else _transfer(transfer),
+        trajectory=None if trajectory is None else _trajectory(trajectory),
+        reason=None if approach.reason is None else _reason(approach.reason),
+    )
+
+
+def _reason(reason: Reason) -> dict[str, Any]:
+    return _present(
+        code=reason.code,
+        joint=reason.joint,
+        detail=reason.detail,
+        margin_rad=_optional(reason.margin_rad),
+        margin_m=_optional(reason.margin_m),
+    )
+
+
+def _transfer(transfer: Transfer) -> dict[str, Any]:
+    return {
+        "planner": transfer.planner,
+        "joints": _numbers(transfer.joints),
+        "length_rad": _number(transfer.length_rad),
+    }
+
+
+def _trajectory(trajectory: Trajectory) -> dict[str, Any]:
+    return {
+        "times_s": _numbers(trajectory.times_s),
+        "joints": _numbers(trajectory.joints),
+        "segments": [
+            {"name": part.name, "start_s": _number(part.start_s), "end_s": _number(part.end_s)}
+            for part in trajectory.segments
+        ],
+    }
+
+
+def _present(**values: Any) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _number(value: float) -> float:
+    # JSON has no NaN and no infinity; orjson would write null, which the contract does not know.
+    if not math.isfinite(value):
+        raise ValueError("a plan has a number that is not finite")
+    return float(value)
+
+
+def _optional(value: float | None) -> float | None:
+    return None if value is None else _number(value)
+
+
+def _numbers(values: NDArray[np.float64] | None) -> list[Any] | None:
+    if values is None:
+        return None
+    if not np.isfinite(values).all():
+        raise ValueError("a plan has a number that is not finite")
+    rows: list[Any] = np.asarray(values, dtype=np.float64).tolist()
+    return rows

@@ -1,0 +1,73 @@
+"""Running the service on a socket of its own."""
+
+import asyncio
+import socket
+
+import typer
+import uvicorn
+
+from app.main import create_app
+from app.settings import Settings
+
+# Requests still being answered at the end get this long.
+GRACE_S = 5
+
+
+class CannotServe(Exception):
+    """The service cannot start, and why in one line."""
+
+
+class _Server(uvicorn.Server):
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started and sockets:
+            host, port = sockets[0].getsockname()[:2]
+            shown = f"[{host}]" if ":" in host else host
+            typer.echo(f"Prunus listens on http://{shown}:{port}")
+
+
+def run_service(settings: Settings) -> None:
+    """Serve until a signal ends it.
+
+    Raises:
+        CannotServe: the address is taken or not this machine's, or the start-up failed.
+    """
+    try:
+        if not settings.database_url:
+            settings.data_dir.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CannotServe(f"cannot use {settings.data_dir}: {error.strerror}") from None
+    listener = _bind(settings.host, settings.port)
+    config = uvicorn.Config(
+        create_app(settings),
+        log_level="warning",
+        access_log=False,
+        timeout_graceful_shutdown=GRACE_S,
+        server_header=False,
+    )
+    server = _Server(config)
+    try:
+        server.run(sockets=[listener])
+    except (KeyboardInterrupt, asyncio.CancelledError):
+        return
+    finally:
+        listener.close()
+    if not server.started:
+        raise CannotServe("the service could not start; the log above says why")
+
+
+def _bind(host: str, port: int) -> socket.socket:
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+        listener = socket.socket(family, kind, protocol)
+        try:
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            listener.bind(address)
+        except OSError:
+            listener.close()
+            raise
+    except OSError as error:
+        raise CannotServe(f"cannot listen on {host}:{port}: {error.strerror}") from None
+    return listener

@@ -1,0 +1,116 @@
+import contextlib
+import json
+import os
+import selectors
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import pytest
+
+REPOSITORY = Path(__file__).parents[2]
+EXAMPLE = REPOSITORY / "openapi" / "examples" / "data_set_3.json"
+ANNOUNCEMENT = "Prunus listens on "
+START_S = 60
+READY_S = 120
+
+
+@dataclass(frozen=True)
+class Server:
+    process: subprocess.Popen[str]
+    url: str
+    data_dir: Path
+    client: httpx2.Client
+
+    def stored_plans(self) -> int:
+        with contextlib.closing(sqlite3.connect(self.data_dir / "prunus.sqlite3")) as database:
+            count: int = database.execute("SELECT count(*) FROM plans").fetchone()[0]
+            return count
+
+    def children(self) -> list[int]:
+        """Processes that the service started, without Python's resource tracker."""
+        found = []
+        for entry in Path("/proc").iterdir():
+            if not entry.name.isdigit():
+                continue
+            with contextlib.suppress(OSError):
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+                command = (entry / "cmdline").read_bytes()
+                if parent == self.process.pid and b"resource_tracker" not in command:
+                    found.append(int(entry.name))
+        return found
+
+
+def wait_until(condition: Callable[[], bool], timeout_s: float) -> None:
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < deadline, "it did not happen in time"
+        time.sleep(0.05)
+
+
+def _first_line(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    with selectors.DefaultSelector() as selector:
+        selector.register(process.stdout, selectors.EVENT_READ)
+        assert selector.select(START_S), "the service said nothing"
+    return process.stdout.readline()
+
+
+@contextlib.contextmanager
+def running_server(data_dir: Path, **environment: str) -> Iterator[Server]:
+    command = [sys.executable, "-m", "app", "serve", "--port", "0", "--data-dir", str(data_dir)]
+    with subprocess.Popen(
+        command,
+        cwd=REPOSITORY,
+        env={**os.environ, **environment},
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            line = _first_line(process)
+            assert line.startswith(ANNOUNCEMENT), line
+            url = line.removeprefix(ANNOUNCEMENT).strip()
+            with httpx2.Client(base_url=url, timeout=120, trust_env=False) as client:
+                wait_until(lambda: client.get("/readyz").status_code == 200, READY_S)
+                yield Server(process, url, data_dir, client)
+        finally:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with running_server(tmp_path_factory.mktemp("service"), PRUNUS_BODY_LIMIT_BYTES="200000") as it:
+        yield it
+
+
+@pytest.fixture
+def request_body() -> dict[str, Any]:
+    """Data set 3, solved by the fastest of the methods."""
+    body: dict[str, Any] = json.loads(EXAMPLE.read_text())
+    body["options"]["method"] = "ssas"
+    return body
+
+
+def assert_problem(
+    answer: httpx2.Response, status: int, pointer: str | None = None
+) -> dict[str, Any]:
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    problem: dict[str, Any] = answer.json()
+    assert set(problem) == {"type", "title", "status", "detail", "errors"}
+    assert problem["status"] == status
+    if pointer is not None:
+        assert pointer in {error["pointer"] for error in problem["errors"]}, problem
+    return problem

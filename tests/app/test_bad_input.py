@@ -1,0 +1,226 @@
+import copy
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import httpx2
+import pytest
+
+from tests.app.conftest import Server, assert_problem
+
+MARKER = "qq7z"
+Body = dict[str, Any]
+BIG = 10**6
+
+# Each: what to set where (a path into the request), and the pointer that the answer must have.
+FAULTS: dict[str, tuple[tuple[str | int, ...], Any, str]] = {
+    "zero direction": (
+        ("targets", 0, "branch_direction"), [0, 0, 0], "#/targets/0/branch_direction"),
+    "short position": (("targets", 0, "position_m"), [0.1, 0.2], "#/targets/0/position_m"),
+    "long position": (("targets", 1, "position_m"), [0.1] * 4, "#/targets/1/position_m"),
+    "short direction": (
+        ("targets", 0, "branch_direction"), [1.0], "#/targets/0/branch_direction"),
+    "no position": (("targets", 0, "position_m"), [], "#/targets/0/position_m"),
+    "centimetres": (("targets", 0, "position_m"), [18.5, -5.7, 42.0], "#/targets/0/position_m"),
+    "far away": (("targets", 0, "position_m"), [1e308, 1e308, 0], "#/targets/0/position_m"),
+    "unknown robot": (("robot",), MARKER, "#/robot"),
+    "robot path": (("robot",), f"../{MARKER}", "#/robot"),
+    "unknown tool": (("tool",), MARKER, "#/tool"),
+    "unknown method": (("options", "method"), MARKER, "#/options/method"),
+    "unknown order": (("options", "order"), MARKER, "#/options/order"),
+    "order not built": (("options", "order"), "optimal", "#/options/order"),
+    "unknown norm": (("options", "norm"), MARKER, "#/options/norm"),
+    "unknown weights": (("options", "weights"), MARKER, "#/options/weights"),
+    "unknown include": (("options", "include"), [MARKER], "#/options/include/0"),
+    "unknown option": (("options", "stand_off"), MARKER, "#/options/stand_off"),
+    "unknown field": (("robots",), MARKER, "#/robots"),
+    "unknown target field": (("targets", 0, "colour"), MARKER, "#/targets/0/colour"),
+    "field to escape": (("a/b~c",), MARKER, "#/a~1b~0c"),
+    "long field": (("options", MARKER * 1000), 1, "#/options"),
+    "empty id": (("targets", 0, "id"), "", "#/targets/0/id"),
+    "number as id": (("targets", 0, "id"), 1, "#/targets/0/id"),
+    "empty batch": (("targets",), [], "#/targets"),
+    "no list": (("targets",), {"id": MARKER}, "#/targets"),
+    "start outside": (
+        ("start_joints",), [9.0, 1.57, -1.5757, 0, 1.5757, 0], "#/start_joints/0"),
+    "start short": (("start_joints",), [0.0], "#/start_joints"),
+    "start null": (("start_joints",), None, "#/start_joints"),
+    "tool null": (("tool",), None, "#/tool"),
+    "options null": (("options",), None, "#/options"),
+    "text as number": (
+        ("targets", 0, "position_m"), [MARKER, 0, 0], "#/targets/0/position_m/0"),
+    "digits as number": (
+        ("targets", 0, "position_m"), ["0.1", 0, 0], "#/targets/0/position_m/0"),
+    "bool as number": (("targets", 0, "position_m"), [True, 0, 0], "#/targets/0/position_m/0"),
+    "number as bool": (("options", "symmetric_tool"), 1, "#/options/symmetric_tool"),
+    "float as int": (("options", "samples"), 1.5, "#/options/samples"),
+    "samples zero": (("options", "samples"), 0, "#/options/samples"),
+    "samples huge": (("options", "samples"), 10**30, "#/options/samples"),
+    "standoff zero": (("options", "standoff_m"), 0, "#/options/standoff_m"),
+    "path points": (("options", "path_points"), BIG, "#/options/path_points"),
+    "dwell negative": (("options", "dwell_s"), -1, "#/options/dwell_s"),
+    "strike zone": (("options", "strike_zone_m"), 0.01, "#/options/strike_zone_m"),
+    "certify": (("options", "certify"), True, "#/options/certify"),
+    "joint weights short": (("options", "joint_weights"), [1.0], "#/options/joint_weights"),
+    "joint weights negative": (
+        ("options", "joint_weights"), [-1, 1, 1, 1, 1, 1], "#/options/joint_weights"),
+    "frame": (("frame",), MARKER, "#/frame"),
+    "scene": (("scene",), {}, "#/scene"),
+    "scene with branches": (
+        ("scene",),
+        {"branches": [{"id": MARKER, "points_m": [[0, 0, 0]], "radius_m": 0.1}]}, "#/scene"),
+    "uncertain": (("targets", 1, "position_std_m"), 0.002, "#/targets/1/position_std_m"),
+}  # fmt: skip
+
+NOT_FINITE = ["NaN", "Infinity", "-Infinity", "1e999", "-1e999", "1" + "0" * 400]
+NOT_JSON = {
+    "nothing": b"",
+    "text": MARKER.encode(),
+    "cut off": b'{"robot": "qq7z',
+    "invalid UTF-8": b'{"robot": "qq7z\xff\xfe"}',
+    "lone surrogate": b'{"robot": "qq7z\\ud800"}',
+    "deep": b"[" * 100_000,
+    "deep field": b'{"robot":' * 5_000,
+    "UTF-16": '{"robot": "qq7z"}'.encode("utf-16"),
+    "list": b'["qq7z"]',
+    "null": b"null",
+    "NaN": b"NaN",
+}
+
+
+@pytest.fixture(autouse=True)
+def _nothing_is_stored(server: Server) -> Iterator[None]:
+    before = server.stored_plans()
+    yield
+    assert server.stored_plans() == before
+
+
+def post(server: Server, content: bytes, media_type: str = "application/json") -> httpx2.Response:
+    return server.client.post("/v1/plans", content=content, headers={"Content-Type": media_type})
+
+
+def changed(body: Body, path: tuple[str | int, ...], value: Any) -> Body:
+    body = copy.deepcopy(body)
+    place: Any = body
+    for step in path[:-1]:
+        place = place[step]
+    place[path[-1]] = value
+    return body
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_fault_is_pointed_to(name: str, server: Server, request_body: Body) -> None:
+    path, value, pointer = FAULTS[name]
+    answer = server.client.post("/v1/plans", json=changed(request_body, path, value))
+    problem = assert_problem(answer, 422, pointer)
+    assert MARKER not in answer.text
+    assert all(error["detail"] for error in problem["errors"])
+
+
+@pytest.mark.parametrize("number", NOT_FINITE)
+@pytest.mark.parametrize(
+    ("path", "pointer"),
+    [
+        (("targets", 0, "position_m", 1), "#/targets/0/position_m/1"),
+        (("targets", 4, "branch_direction", 0), "#/targets/4/branch_direction/0"),
+        (("start_joints", 2), "#/start_joints/2"),
+        (("options", "standoff_m"), "#/options/standoff_m"),
+    ],
+)
+def test_number_that_is_not_finite(
+    number: str, path: tuple[str | int, ...], pointer: str, server: Server, request_body: Body
+) -> None:
+    if path[0] == "options":
+        request_body["options"]["standoff_m"] = 0.04
+    text = json.dumps(changed(request_body, path, MARKER)).replace(f'"{MARKER}"', number)
+    answer = post(server, text.encode())
+    assert_problem(answer, 422, pointer)
+    assert number not in answer.text or number == "Infinity"
+
+
+@pytest.mark.parametrize("name", NOT_JSON)
+def test_not_json(name: str, server: Server) -> None:
+    answer = post(server, NOT_JSON[name])
+    assert_problem(answer, 422, "#")
+    assert MARKER not in answer.text
+
+
+def test_duplicate_ids(server: Server, request_body: Body) -> None:
+    for target in request_body["targets"][1:3]:
+        target["id"] = MARKER
+    answer = server.client.post("/v1/plans", json=request_body)
+    assert_problem(answer, 422, "#/targets/2/id")
+    assert MARKER not in answer.text
+
+
+@pytest.mark.parametrize("field", ["robot", "targets"])
+def test_missing_field(field: str, server: Server, request_body: Body) -> None:
+    del request_body[field]
+    assert_problem(server.client.post("/v1/plans", json=request_body), 422, f"#/{field}")
+
+
+def test_all_faults_at_once(server: Server, request_body: Body) -> None:
+    request_body["tool"] = MARKER
+    request_body["frame"] = MARKER
+    request_body["options"]["norm"] = MARKER
+    problem = assert_problem(server.client.post("/v1/plans", json=request_body), 422)
+    pointers = {error["pointer"] for error in problem["errors"]}
+    assert pointers == {"#/tool", "#/frame", "#/options/norm"}
+
+
+def test_number_of_errors_is_bounded(server: Server, request_body: Body) -> None:
+    request_body["options"] = {f"{MARKER}{k}": k for k in range(5_000)}
+    problem = assert_problem(server.client.post("/v1/plans", json=request_body), 422, "#")
+    assert len(problem["errors"]) == 1
+
+
+def test_many_spoiled_targets_cost_little(server: Server, request_body: Body) -> None:
+    request_body["targets"] = [{}] * 40_000
+    problem = assert_problem(server.client.post("/v1/plans", json=request_body), 422)
+    assert {error["pointer"] for error in problem["errors"]} == {
+        "#/targets/0/id", "#/targets/0/position_m", "#/targets/0/branch_direction",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "media_type", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data"]
+)
+def test_wrong_media_type(media_type: str, server: Server, request_body: Body) -> None:
+    assert_problem(post(server, json.dumps(request_body).encode(), media_type), 415)
+
+
+def test_body_over_the_limit(server: Server) -> None:
+    assert_problem(post(server, b" " * 200_001), 413)
+
+
+@pytest.mark.parametrize("sizes", [[10_000] * 40, [100_000, 100_001], [200_001]])
+def test_streamed_body_over_the_limit(sizes: list[int], server: Server) -> None:
+    chunks = (b" " * size for size in sizes)
+    answer = server.client.post(
+        "/v1/plans", content=chunks, headers={"Content-Type": "application/json"}
+    )
+    assert_problem(answer, 413)
+
+
+def test_batch_over_the_limit(server: Server) -> None:
+    target = {"id": "1", "position_m": [0, 0, 0], "branch_direction": [0, 0, 1]}
+    body = {"robot": "tabletop", "targets": [target] * 2001}
+    problem = assert_problem(server.client.post("/v1/plans", json=body), 422, "#/targets")
+    assert "asynchronous" in problem["errors"][0]["detail"]
+
+
+@pytest.mark.parametrize(
+    "path", ["/v1/plans/1", f"/v1/plans/{'0' * 32}", "/v1/plans/%00", "/v1/robots/qq7z", "/qq7z"]
+)
+def test_unknown_path(path: str, server: Server) -> None:
+    answer = server.client.get(path)
+    assert_problem(answer, 404)
+    assert MARKER not in answer.text
+
+
+def test_wrong_http_method(server: Server) -> None:
+    assert_problem(server.client.delete("/v1/plans"), 405)
+
+
+def test_service_survived_it_all(server: Server) -> None:
+    assert server.client.get("/readyz").status_code == 200
