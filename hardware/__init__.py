@@ -1,1 +1,1 @@
-"""What moves the arm: between the solver's verified plans and the servos. See docs/architecture.md."""
+"""What moves the arm: between verified plans and servos. See docs/architecture.md."""

@@ -54,7 +54,8 @@ def draw_arm(plan: Mapping[str, Any], problem: Problem) -> Figure:
     close.set_title("approach circles: feasible arcs green; cut-ins arrive at the blossoms")
     method = plan["options"]["method"]
     figure.suptitle(f"Approaches planned by {method} and verified", fontsize=15)
-    whole.legend(loc="upper left", frameon=False, title="target")
+    if steps:
+        whole.legend(loc="upper left", frameon=False, title="target")
     return figure
 
 

@@ -1,0 +1,112 @@
+"""What the documents say is compared with the code, and what they tell people to type is run."""
+
+import dataclasses
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.demo_request import demo_request
+from app.plan_table import HEADINGS, TIME_COLUMN, plan_rows
+from app.services.wire import parse_request, plan_to_wire, problem_from_wire
+from app.settings import Settings
+from solver import Options, solve
+from solver.problem import RANGES
+from solver.registry import METHODS
+from solver.solution import REASON_CODES
+
+ROOT = Path(__file__).parents[2]
+DOCUMENTS = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]
+
+
+def rows(document: str) -> list[list[str]]:
+    """The cells of every table row in a document, without code marks."""
+    lines = (ROOT / document).read_text(encoding="utf-8").splitlines()
+    tables = [line for line in lines if line.startswith("| ")]
+    return [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in tables]
+
+
+def fences(document: str, language: str) -> list[str]:
+    text = (ROOT / document).read_text(encoding="utf-8")
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_somewhere(document: Path) -> None:
+    for link in re.findall(r"\]\(([^)#]+)", document.read_text(encoding="utf-8")):
+        if not link.startswith("http"):
+            assert (document.parent / link).exists(), link
+
+
+def test_options_are_documented_with_their_defaults_and_ranges() -> None:
+    table = {row[0]: row for row in rows("docs/options.md")[2:]}
+    assert list(table) == [field.name for field in dataclasses.fields(Options)]
+    for field in dataclasses.fields(Options):
+        default, written = table[field.name][1:3]
+        if field.default is not None:
+            assert default == str(field.default).lower(), field.name
+        if field.name in RANGES:
+            lowest, highest = RANGES[field.name]
+            assert written == f"{lowest:g} to {highest:g}", field.name
+
+
+def test_methods_are_documented() -> None:
+    documented = {row[0] for row in rows("docs/task_definition.md")}
+    assert set(METHODS) <= documented
+
+
+def test_reason_codes_are_documented() -> None:
+    first = [row[0] for row in rows("docs/errors.md")]
+    assert [code for code in first if code in REASON_CODES] == list(REASON_CODES)
+
+
+def test_settings_are_documented_with_their_defaults() -> None:
+    documented = {row[0]: row[1] for row in rows("docs/settings.md")[2:]}
+    assert documented == {
+        f"PRUNUS_{name.upper()}": str(field.default)
+        for name, field in Settings.model_fields.items()
+    }
+
+
+def test_python_example_of_the_readme_plans_its_target() -> None:
+    (example,) = fences("README.md", "python")
+    command = [sys.executable, "-c", example]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert printed.startswith("1 planned 0.128")
+
+
+def test_command_line_of_the_readme_plans_data_set_3(tmp_path: Path) -> None:
+    (line,) = [text for text in fences("README.md", "sh") if "prunus plan" in text]
+    words = shlex.split(line)
+    assert words[0] == ".venv/bin/prunus"
+    arguments = [str(tmp_path / "plan.json") if word == "plan.json" else word for word in words[1:]]
+    subprocess.run([sys.executable, "-m", "app", *arguments], check=True, cwd=ROOT)
+    assert json.loads((tmp_path / "plan.json").read_text())["summary"]["planned"] == 5
+
+
+def test_curl_body_of_the_readme_is_a_request_that_is_planned() -> None:
+    (line,) = [text for text in fences("README.md", "sh") if text.startswith("curl")]
+    body = shlex.split(line)[-1]
+    assert solve(problem_from_wire(parse_request(body.encode()))).planned == 1
+
+
+def test_table_of_the_readme_is_what_the_demo_computes() -> None:
+    """All columns but the time, to the digits printed."""
+    problem = problem_from_wire(parse_request(json.dumps(demo_request()).encode()))
+    computed = plan_rows(plan_to_wire(solve(problem), "0"))
+    printed = [row for row in rows("README.md") if len(row) == len(HEADINGS)]
+    assert printed[0] == list(HEADINGS)
+    for row in (*printed[2:], *computed):
+        assert float(row[TIME_COLUMN]) > 0
+    without_time = [list(row[:TIME_COLUMN]) for row in computed]
+    assert [row[:TIME_COLUMN] for row in printed[2:]] == without_time
+    assert printed == rows("docs/pictures/table.md")
+
+
+def test_demo_request_is_the_example() -> None:
+    example = json.loads((ROOT / "openapi/examples/data_set_3.json").read_text())
+    assert example == demo_request()
