@@ -19,13 +19,18 @@ from numba.core import config
 _KERNEL_FOLDERS = ("kinematics", "approach")
 
 
+def kernel_sources() -> tuple[Path, ...]:
+    """The files that compiled code depends on: kernels, and the constants compiled into them."""
+    here = Path(__file__).parent
+    folders = (file for folder in _KERNEL_FOLDERS for file in (here / folder).glob("*.py"))
+    return (Path(__file__), here / "tolerances.py", *sorted(folders))
+
+
 def cache_folder() -> Path:
     """Where this machine keeps the compiled kernels of this version of the sources."""
     root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    here = Path(__file__).parent
-    sources = sorted(file for folder in _KERNEL_FOLDERS for file in (here / folder).glob("*.py"))
     digest = hashlib.sha256()
-    for file in (Path(__file__), *sources):
+    for file in kernel_sources():
         digest.update(file.read_bytes())
     cpu = llvm.get_host_cpu_name()  # type: ignore[no-untyped-call]
     python = f"{sys.version_info.major}.{sys.version_info.minor}"

@@ -12,6 +12,7 @@ from solver.robots.model import Array, Robot, Tool
 from solver.tolerances import (
     DEVIATION_SAMPLES,
     EXCHANGE_DENSITY,
+    EXCHANGE_ZOOMS,
     LIMIT_EXCESS_RAD,
     TRAJECTORY_HALVINGS,
     TRAJECTORY_STEP_S,
@@ -86,7 +87,7 @@ def broken_limit(task: ApproachTask, candidate: Candidate) -> float | None:
     coarse = np.asarray(task.retreats_m)
     shares = np.arange(EXCHANGE_DENSITY)[:, None] / EXCHANGE_DENSITY
     retreats = np.append((coarse[:-1] + shares * np.diff(coarse)).T.ravel(), 0.0)
-    for _ in range(_ZOOMS):
+    for _ in range(EXCHANGE_ZOOMS):
         inside = _inside(task, _postures(task, candidate, retreats))
         k = int(inside.argmin())
         around = retreats[max(k - 1, 0)], retreats[min(k + 1, len(retreats) - 1)]
@@ -95,9 +96,6 @@ def broken_limit(task: ApproachTask, candidate: Candidate) -> float | None:
     worst = _inside(task, _postures(task, candidate, retreats))
     k = int(worst.argmin())
     return float(retreats[k]) if worst[k] < -LIMIT_EXCESS_RAD / 2 else None
-
-
-_ZOOMS = 4  # each narrows the place of the worst posture eightfold: 2 mm to 0.06 um
 
 
 def _inside(task: ApproachTask, rows: Array) -> Array:

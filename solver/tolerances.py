@@ -16,6 +16,10 @@ AXIS_ERROR_RAD: Final = 1e-6
 EFFORT_ERROR_RELATIVE: Final = 1e-9
 """A claimed effort against the recomputed one, relative to max(1, effort)."""
 
+SAME_BRANCH_RAD: Final = 1e-4
+"""A row and the closed form's posture on its branch. Two branches are further apart unless the arm
+is all but singular, where the inverse itself loses digits."""
+
 RATE_EXCESS_RELATIVE: Final = 1e-6
 """Velocities and accelerations above their limits, relative: divided differences of times that are
 rounded at 1e-13 s over steps of 1e-2 s lose nine digits in the second difference."""
@@ -69,6 +73,12 @@ target solved again. One or two are usual: the posture moves quadratically littl
 EXCHANGE_DENSITY: Final = 8
 """Postures looked at between two rows of the cut-in when such a posture is searched."""
 
+EXCHANGE_ZOOMS: Final = 4
+"""How often the place of that posture is narrowed, eightfold each time: 2 mm to 0.5 um."""
+
+ARC_PIECES: Final = 8
+"""Pieces at least in which the effort of an arc is sampled; long arcs have one for 0.5 degrees."""
+
 # --- Nonlinear programme ------------------------------------------------------------------------
 NLP_TOLERANCE: Final = 1e-9
 """IPOPT's overall error: below the verifier's by three orders in metres and radians."""
@@ -76,6 +86,16 @@ NLP_TOLERANCE: Final = 1e-9
 NLP_ITERATIONS: Final = 200
 """IPOPT's iteration limit; warm-started problems take about 15. A budget counts iterations, never
 seconds, so that the same request has the same answer."""
+
+NLP_BARRIER: Final = 1e-4
+"""IPOPT's first barrier parameter. It starts at an optimum, so far below the default of 0.1."""
+
+NLP_BOUND_PUSH: Final = 1e-5
+"""How far IPOPT moves its start inside the bounds, absolute and relative, for the same reason."""
+
+EXACT_ZERO: Final = 1e-15
+"""A cosine or sine of a link twist below this is zero: a right angle's cosine comes as 6e-17 and
+would keep dead terms in every expression."""
 
 # --- Trajectory ---------------------------------------------------------------------------------
 TRAJECTORY_STEP_S: Final = 0.02
@@ -87,3 +107,6 @@ TRAJECTORY_HALVINGS: Final = 8
 DEVIATION_SAMPLES: Final = 3
 """Postures between two rows at which the distance from the straight line is measured. It is nearly
 a parabola between rows, so its middle is among them and its quarter points tell if it is not."""
+
+FLAT_SLOPE_RAD_M: Final = 1e-6
+"""A joint that turns less along the cut-in does not set its pace [rad/m]; no division by zero."""

@@ -24,6 +24,7 @@ from solver.tolerances import (
     LIMIT_EXCESS_RAD,
     POSITION_ERROR_M,
     RATE_EXCESS_RELATIVE,
+    SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
 from solver.trajectory.rates import rate_ratios
@@ -186,12 +187,7 @@ def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator
     for name, pose, row in (("standby", poses[0], rows[0]), ("thinning", poses[-1], rows[-1])):
         found = inverse_kinematics(robot, tool, pose[None]).joints[0, claim.branch]
         turned = np.abs(np.remainder(found - row + np.pi, 2 * np.pi) - np.pi).max()
-        yield Residual(f"{name}_branch_rad", float(turned), _BRANCH_RAD)
-
-
-# Two branches of one pose are this far apart unless the arm is all but singular, where the inverse
-# also loses digits: enough to tell a branch, loose enough for rounding.
-_BRANCH_RAD = 1e-4
+        yield Residual(f"{name}_branch_rad", float(turned), SAME_BRANCH_RAD)
 
 
 def _number_residuals(

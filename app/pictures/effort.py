@@ -83,5 +83,5 @@ def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey) -> None
     )
     axes.set_ylabel(f"target {approach['target_id']}")
     axes.grid(alpha=0.25)
-    axes.legend(loc="upper right", fontsize=8, ncols=2)
+    axes.legend(loc="upper left", fontsize=8, ncols=2)
     axes.margins(y=0.12)

@@ -63,7 +63,7 @@ def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
 async def create_plan(request: Request) -> Response:
     """Targets that cannot be reached come back infeasible, with a reason."""
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type != "application/json":
+    if media_type not in ("", "application/json"):
         raise ProblemError(415, "unsupported_media_type", "The body must be application/json.")
     body = await request.body()
     limit: int = request.app.state.settings.sync_targets_limit

@@ -14,9 +14,7 @@ from solver.approach.task import ApproachTask
 from solver.diagnosis import diagnose
 from solver.methods.candidate import Candidate
 from solver.solution import Reason
-from solver.tolerances import ARC_SAMPLES
-
-_PIECES_AT_LEAST = 8
+from solver.tolerances import ARC_PIECES, ARC_SAMPLES
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:
     refined = 0
     for arc in task_arcs(task):
         length = arc.upper_rad - arc.lower_rad
-        pieces = max(_PIECES_AT_LEAST, math.ceil(length / (2 * math.pi) * ARC_SAMPLES))
+        pieces = max(ARC_PIECES, math.ceil(length / (2 * math.pi) * ARC_SAMPLES))
         angle, cost, count = least_effort(
             task.for_kernels(arc.tool_side), arc.branch, arc.lower_rad, arc.upper_rad, pieces
         )

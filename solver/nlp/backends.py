@@ -11,7 +11,7 @@ from solver.approach.task import ApproachTask
 from solver.methods.semi_analytic import ArcOptimum
 from solver.nlp.formulation import Programme, build_programme
 from solver.robots.model import Robot
-from solver.tolerances import NLP_ITERATIONS, NLP_TOLERANCE
+from solver.tolerances import NLP_BARRIER, NLP_BOUND_PUSH, NLP_ITERATIONS, NLP_TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ def _solver(robot: Robot, norm: str) -> _Solver:
             "sb": "yes",
             "tol": NLP_TOLERANCE,
             "max_iter": NLP_ITERATIONS,
-            "mu_init": 1e-4,
-            "bound_push": 1e-5,
-            "bound_frac": 1e-5,
+            "mu_init": NLP_BARRIER,
+            "bound_push": NLP_BOUND_PUSH,
+            "bound_frac": NLP_BOUND_PUSH,
             "bound_relax_factor": 0.0,
         },
     }

@@ -12,12 +12,14 @@ Subject to   position(q)   = p                 axes(q)   = [y x z, y, z](phi)
              limits of q and q_s, phi inside the warm start's arc
 """
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
 
 from solver.robots.model import Robot
+from solver.tolerances import EXACT_ZERO
 
 
 @dataclass(frozen=True)
@@ -102,6 +104,5 @@ def axes_error(turn: ca.SX, wanted: ca.SX) -> ca.SX:
 
 
 def _twist(alpha: float) -> tuple[float, float]:
-    # Right angles exactly: a cosine of 6e-17 would keep dead terms in every expression.
-    cos, sin = float(ca.cos(alpha)), float(ca.sin(alpha))
-    return (0.0 if abs(cos) < 1e-15 else cos), (0.0 if abs(sin) < 1e-15 else sin)
+    cos, sin = math.cos(alpha), math.sin(alpha)
+    return (0.0 if abs(cos) < EXACT_ZERO else cos), (0.0 if abs(sin) < EXACT_ZERO else sin)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.robots.model import Array, Robot
+from solver.tolerances import FLAT_SLOPE_RAD_M
 from solver.trajectory.rates import rate_ratios
 
 
@@ -99,13 +100,10 @@ def time_cut_in(
     slope = np.max(np.abs(np.diff(rows, axis=0)), axis=0) / spacing
     law = TrapezoidalLaw(
         distance=standoff_m,
-        peak_velocity=float(np.min(robot.velocity / np.maximum(slope, _FLAT_SLOPE))),
-        acceleration=float(np.min(robot.acceleration / np.maximum(slope, _FLAT_SLOPE))),
+        peak_velocity=float(np.min(robot.velocity / np.maximum(slope, FLAT_SLOPE_RAD_M))),
+        acceleration=float(np.min(robot.acceleration / np.maximum(slope, FLAT_SLOPE_RAD_M))),
     )
     return _sample(robot, law, path, step_s)
-
-
-_FLAT_SLOPE = 1e-6  # [rad/m]: a joint that turns less does not limit the pace
 
 
 def _sample(
