@@ -11,7 +11,7 @@ from solver.approach.frame import signed_angle
 from solver.approach.task import ApproachTask
 from solver.effort import posture_effort
 from solver.methods.candidate import Candidate
-from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, solve_ssas
+from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, why_none
 from solver.nlp.backends import ProgrammeResult, solve_programme
 from solver.solution import Reason
 
@@ -26,7 +26,7 @@ def solve_ncos(task: ApproachTask) -> Candidate | Reason:
     """
     warm_start = best_on_arcs(task)
     if warm_start is None:
-        return solve_ssas(task)
+        return why_none(task)
     result = solve_programme(task, warm_start)
     kept = Candidate(
         signed_angle(warm_start.angle_rad),
