@@ -5,6 +5,7 @@ import pytest
 
 from app import demo
 from app.demo import run_demo
+from app.demo_request import demo_request
 
 PNG = b"\x89PNG\r\n"
 
@@ -26,7 +27,7 @@ def test_demo_plans_all_and_writes_where_it_says(
 def test_demo_fails_when_a_target_is_not_planned(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    request = demo.demo_request()
+    request = demo_request()
     request["targets"][4]["position_m"] = [0.0, 2.0, 0.1]
     monkeypatch.setattr(demo, "demo_request", lambda: request)
     assert run_demo(tmp_path) == 1
