@@ -31,7 +31,10 @@ class UnsupportedKinematics(SolverError):
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing wrong in a problem: `path` leads to the field as in the request's JSON."""
+    """One thing wrong in a problem: `path` leads to the field as in the request's JSON.
+
+    `detail` does not repeat the value, so that an answer never echoes what was sent.
+    """
 
     path: tuple[str | int, ...]
     detail: str

@@ -99,7 +99,7 @@ class Problem:
         tool = self.robot.tool(self.tool)
         if tool is None:
             known = ", ".join(tool.name for tool in self.robot.tools)
-            faults.append(Fault(("tool",), f"unknown tool {self.tool!r}; known: {known}"))
+            faults.append(Fault(("tool",), f"unknown tool; known: {known}"))
         return tool or default
 
     @property
@@ -141,8 +141,8 @@ def _start_faults(robot: Robot, start: Sequence[float]) -> Iterable[Fault]:
         if not joint.lower_rad <= value <= joint.upper_rad:
             yield Fault(
                 ("start_joints", i),
-                f"{joint.name} is at {value:.6g} rad, outside its limits "
-                f"{joint.lower_rad:.6g} to {joint.upper_rad:.6g}",
+                f"outside the limits of {joint.name}, "
+                f"{joint.lower_rad:.6g} to {joint.upper_rad:.6g} rad",
             )
 
 
@@ -156,7 +156,7 @@ def _target_faults(targets: Sequence[Target], reach_m: float) -> Iterable[Fault]
         elif target.id in first_index:
             yield Fault(
                 ("targets", k, "id"),
-                f"{target.id!r} is also the id of target {first_index[target.id]}",
+                f"also the id of target {first_index[target.id]}",
             )
         first_index.setdefault(target.id, k)
         if problem := _vector_problem(target.position_m, 3):
@@ -203,7 +203,7 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
     for name, known in choices.items():
         value = getattr(options, name)
         if value not in known:
-            detail = f"{value!r} is not available; available: {', '.join(known)}"
+            detail = f"not available; available: {', '.join(known)}"
             yield Fault(("options", name), detail)
     for name, (lowest, highest) in RANGES.items():
         value = getattr(options, name)
@@ -214,7 +214,7 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
             yield Fault(("options", name), f"must be {allowed}")
     for i, part in enumerate(options.include or ()):
         if part not in INCLUDES:
-            detail = f"{part!r} is not available; available: {', '.join(INCLUDES)}"
+            detail = f"not available; available: {', '.join(INCLUDES)}"
             yield Fault(("options", "include", i), detail)
     if options.joint_weights is not None:
         if problem := _vector_problem(options.joint_weights, joints):

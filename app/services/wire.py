@@ -54,7 +54,7 @@ def problem_from_wire(request: PlanRequest) -> Problem:
     except UnknownRobot as error:
         faults.append(Fault(("robot",), f"unknown robot; known: {', '.join(error.known)}"))
     except InvalidProblem as error:
-        faults += (_without_value(fault, given) for fault in error.faults)
+        faults += error.faults
     if faults:
         raise InvalidProblem(tuple(faults))
     return problem
@@ -81,18 +81,6 @@ def _not_available(given: Mapping[str, Any]) -> list[Fault]:
         if "position_std_m" in target
     )
     return faults
-
-
-def _without_value(fault: Fault, given: Mapping[str, Any]) -> Fault:
-    value: Any = given
-    try:
-        for step in fault.path:
-            value = value[step]
-    except (KeyError, IndexError, TypeError):
-        return fault
-    if not isinstance(value, str) or not value:
-        return fault
-    return Fault(fault.path, fault.detail.replace(repr(value), "'…'"))
 
 
 def plan_to_wire(plan: Plan, plan_id: str) -> dict[str, Any]:
