@@ -6,6 +6,7 @@ from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 HEADINGS: Final = (
     "target",
@@ -95,5 +96,5 @@ def _table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -
         words = heading in ("target", "status", "solver")
         table.add_column(heading, justify="left" if words else "right", no_wrap=words)
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*map(Text, row))  # as it is: an id may look like markup
     return table

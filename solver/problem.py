@@ -18,6 +18,7 @@ NORMS: Final = ("l1", "l2")
 WEIGHTS: Final = ("uniform",)
 INCLUDES: Final = ("path", "transfer", "trajectory")
 FULL_ANSWER_TARGETS: Final = 50
+MOST_WEIGHT: Final = 1e6
 
 
 @dataclass(frozen=True)
@@ -219,5 +220,6 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
     if options.joint_weights is not None:
         if problem := _vector_problem(options.joint_weights, joints):
             yield Fault(("options", "joint_weights"), problem)
-        elif min(options.joint_weights) < 0 or max(options.joint_weights) <= 0:
-            yield Fault(("options", "joint_weights"), "weights are not negative and not all zero")
+        elif min(options.joint_weights) < 0 or not 0 < max(options.joint_weights) <= MOST_WEIGHT:
+            detail = f"weights are between 0 and {MOST_WEIGHT:g}, and not all zero"
+            yield Fault(("options", "joint_weights"), detail)

@@ -75,3 +75,13 @@ def test_table_speaks_degrees_and_keeps_failures(mixed: tuple[dict[str, Any], Pr
     assert lines[0].count("|") == len(HEADINGS) + 1
     assert "| far | infeasible |" in lines[3]
     assert "| 7.34 |" in lines[2]
+
+
+def test_ids_that_look_like_markup_are_printed_as_they_are() -> None:
+    request = demo_request()
+    request["targets"] = request["targets"][:1]
+    request["targets"][0]["id"] = "[/x][red]"
+    plan, _ = planned(request)
+    console = Console(record=True, width=200, file=io.StringIO())
+    print_plan(plan, console)
+    assert console.export_text().count("[/x][red]") == 3

@@ -50,6 +50,7 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
         (Options(joint_weights=(1, 1)), "#/options/joint_weights"),
         (Options(joint_weights=(-1, 1, 1, 1, 1, 1)), "#/options/joint_weights"),
         (Options(joint_weights=(0, 0, 0, 0, 0, 0)), "#/options/joint_weights"),
+        (Options(joint_weights=(1e308, 1, 1, 1, 1, 1)), "#/options/joint_weights"),
         (Options(include=("path", "gossip")), "#/options/include/1"),
     ],
 )
