@@ -21,7 +21,7 @@ def diagnose(task: ApproachTask, angles: Array) -> Reason:
         return Reason(
             "out_of_reach",
             f"the wrist centre stays {-best_reach * 1000:.1f} mm outside the reach at every "
-            "approach angle",
+            "approach angle tried",
             margin_m=best_reach,
         )
     thinning = np.where(reach >= 0, inside.min(axis=-1), -np.inf)
@@ -43,7 +43,7 @@ def diagnose(task: ApproachTask, angles: Array) -> Reason:
     return Reason(
         "cut_in_infeasible",
         "thinning and standby postures are inside the limits at some approach angles, but at none "
-        "of them the straight cut-in between them on one branch",
+        "of those tried the straight cut-in between them on one branch",
     )
 
 
