@@ -1,0 +1,1 @@
+"""Which servos drive which joint: a TOML file a robot."""

@@ -1,0 +1,1 @@
+"""Calibration files that ship: zero for each arm, and the thesis's own as an example."""

@@ -1,0 +1,5 @@
+"""Register tables of servos as data, and what reads them."""
+
+from hardware.control_tables.loading import Register, ServoModel, servo_model, servo_models
+
+__all__ = ["Register", "ServoModel", "servo_model", "servo_models"]

@@ -1,0 +1,144 @@
+"""What can go wrong with the servos, as exceptions with data. `code` is what clients get to see."""
+
+from typing import ClassVar
+
+
+class HardwareError(Exception):
+    """Root of everything this package raises on purpose."""
+
+    code: ClassVar[str] = "hardware"
+
+    def __init__(self, detail: str) -> None:
+        super().__init__(detail)
+        self.detail = detail
+
+
+class InvalidArm(HardwareError):
+    """An arm or calibration file that cannot be read or does not fit its robot."""
+
+    code = "invalid_arm"
+
+
+class PortUnavailable(HardwareError):
+    """The serial device cannot be opened: not there, not allowed, or somebody else's."""
+
+    code = "port_unavailable"
+
+
+class BusLost(HardwareError):
+    """The serial device went away while it was in use."""
+
+    code = "bus_lost"
+
+
+class ServoMissing(HardwareError):
+    """A servo does not answer."""
+
+    code = "servo_missing"
+
+    def __init__(self, servo_id: int, detail: str) -> None:
+        super().__init__(detail)
+        self.servo_id = servo_id
+
+
+class CorruptPackets(HardwareError):
+    """A servo's answers stay unreadable, or it reports ours to be, after every retry."""
+
+    code = "corrupt_packets"
+
+    def __init__(self, servo_id: int, detail: str) -> None:
+        super().__init__(detail)
+        self.servo_id = servo_id
+
+
+class ServoAlarm(HardwareError):
+    """A servo reports errors: overload, overheating, voltage, a value that it refuses."""
+
+    code = "servo_alarm"
+
+    def __init__(self, servo_id: int, errors: tuple[str, ...]) -> None:
+        super().__init__(f"servo {servo_id} reports: {', '.join(errors)}")
+        self.servo_id = servo_id
+        self.errors = errors
+
+
+class WrongSetting(HardwareError):
+    """A servo is not what the arm file says, or a register of it forbids safe use."""
+
+    code = "wrong_setting"
+
+    def __init__(self, servo_id: int, detail: str) -> None:
+        super().__init__(f"servo {servo_id}: {detail}")
+        self.servo_id = servo_id
+
+
+class PairDisagreement(HardwareError):
+    """Two servos on one joint do not stand at the same angle."""
+
+    code = "pair_disagreement"
+
+    def __init__(self, joint: str, apart_rad: float) -> None:
+        super().__init__(f"the two servos of {joint} are {apart_rad:.4f} rad apart")
+        self.joint = joint
+        self.apart_rad = apart_rad
+
+
+class UnsafeGoal(HardwareError):
+    """A goal outside the limits, or a step faster than the joint may turn. It was not sent."""
+
+    code = "unsafe_goal"
+
+    def __init__(self, joint: str, detail: str) -> None:
+        super().__init__(f"{joint}: {detail}")
+        self.joint = joint
+
+
+class OutsideLimits(HardwareError):
+    """The arm stands outside its joint limits, so no motion from there is known to be safe."""
+
+    code = "outside_limits"
+
+    def __init__(self, joint: str, detail: str) -> None:
+        super().__init__(f"{joint}: {detail}")
+        self.joint = joint
+
+
+class FollowingError(HardwareError):
+    """A joint lags behind its goal, or did not arrive at it."""
+
+    code = "following_error"
+
+    def __init__(self, joint: str, error_rad: float, detail: str) -> None:
+        super().__init__(f"{joint} {detail} by {abs(error_rad):.4f} rad")
+        self.joint = joint
+        self.error_rad = error_rad
+
+
+class EndEffectorFailed(HardwareError):
+    """The end-effector's output is not what was commanded."""
+
+    code = "end_effector_failed"
+
+
+class OrderRefused(HardwareError):
+    """An execution that this worker must not run: another model or tool, or run before."""
+
+    code = "order_refused"
+
+
+class LinkLost(HardwareError):
+    """The service was not heard for too long while the arm was moving."""
+
+    code = "link_lost"
+
+
+class Stopped(HardwareError):
+    """Somebody asked for a stop."""
+
+    code = "stopped"
+
+
+class Canceled(HardwareError):
+    """Somebody canceled the execution."""
+
+    code = "canceled"

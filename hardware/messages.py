@@ -1,0 +1,342 @@
+"""What goes over the robot link, a WebSocket between the service and an arm's worker.
+
+Every message is one JSON object; `type` names its class. Joint vectors are in the model's order
+[rad], times in s, lengths in m, instants are RFC 3339 text in UTC. The link is an edge of both
+programs, so messages are checked against these classes on arrival.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Final, Literal
+
+import orjson
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
+
+from hardware.exceptions import HardwareError
+
+HEARTBEAT_S: Final = 0.5
+"""The service says something at least this often, and a worker sends telemetry more often."""
+
+SILENCE_S: Final = 2.0
+"""Silence after which either side takes the link for lost: four heartbeats."""
+
+# An execution's status; a target's status within it.
+QUEUED: Final = "queued"
+EXECUTING: Final = "executing"
+PAUSED: Final = "paused"
+COMPLETED: Final = "completed"
+FAILED: Final = "failed"
+CANCELED: Final = "canceled"
+ENDED: Final = (COMPLETED, FAILED, CANCELED)
+NOT_STARTED: Final = "not_started"
+DONE: Final = "done"
+SKIPPED: Final = "skipped"
+UNKNOWN: Final = "unknown"
+
+_MESSAGE = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+Rows = tuple[tuple[float, ...], ...]
+
+
+class InvalidMessage(HardwareError):
+    """Something came over the link that is no message."""
+
+    code = "invalid_message"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Failure:
+    """What went wrong: a code for programs, a sentence for people, and when."""
+
+    code: str
+    detail: str
+    at: str
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class ServoHealth:
+    """What one servo said last.
+
+    Attributes:
+        errors: names of the error bits in its last answer.
+        load_share: present load as a share of full torque, inferred by the servo, signed.
+        retries: reads of it that had to be repeated since the worker started.
+    """
+
+    id: int
+    joint: str
+    position_rad: float
+    load_share: float
+    voltage_v: float
+    temperature_c: int
+    errors: tuple[str, ...]
+    retries: int
+    read_at: str
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class TargetAccount:
+    """What became of one target.
+
+    Attributes:
+        status: not_started, executing, done, skipped or unknown.
+        measured_standby_joints, measured_thinning_joints: means of several reads after arrival.
+        standby_error_m, target_error_m: distance of the tool centre point, by forward kinematics of
+            these means, from where the plan has it.
+    """
+
+    target_id: str
+    status: str
+    measured_standby_joints: tuple[float, ...] | None = None
+    measured_thinning_joints: tuple[float, ...] | None = None
+    standby_error_m: float | None = None
+    target_error_m: float | None = None
+    error: Failure | None = None
+
+
+# --- From the worker ------------------------------------------------------------------------------
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Hello:
+    """The first message: who joins. `model_version` is the digest of the worker's model file."""
+
+    robot: str
+    model_version: str
+    tool: str
+    end_effector: str
+    device: str
+    simulated: bool
+    calibration_rad: tuple[float, ...]
+    version: str
+    type: Literal["hello"] = "hello"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Telemetry:
+    """How the arm is now.
+
+    Attributes:
+        status: idle, executing, paused or fault.
+        joints: from the last reads; absent until every servo has been read.
+        joints_read_at: when the oldest of those reads was made.
+        torque: on, off or unknown.
+        end_effector_state: on, off, none or unknown.
+        faults: latched until acknowledged.
+        overruns: ticks of the control loop that came late since the worker started.
+    """
+
+    status: str
+    torque: str
+    end_effector_state: str
+    faults: tuple[Failure, ...]
+    servos: tuple[ServoHealth, ...]
+    overruns: int
+    joints: tuple[float, ...] | None = None
+    joints_read_at: str | None = None
+    execution_id: str | None = None
+    type: Literal["telemetry"] = "telemetry"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class ExecutionAccount:
+    """How an execution stands, in full each time, so that a lost message costs nothing.
+
+    Attributes:
+        status: executing, paused, completed, failed or canceled.
+        segment: what the arm is doing: approach (to the plan's start), transfer, cut_in, dwell,
+            retreat; absent when nothing.
+    """
+
+    execution_id: str
+    status: str
+    targets: tuple[TargetAccount, ...]
+    segment: str | None = None
+    error: Failure | None = None
+    type: Literal["execution_account"] = "execution_account"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class StopReport:
+    """The answer to a stop: what was done and what was verified by reading.
+
+    Attributes:
+        stopped: no motion is commanded any more, and where torque is on the hold was sent.
+        verified: every servo was read twice after that and stood still.
+        joints: from the last of these reads.
+    """
+
+    request_id: str
+    stopped: bool
+    verified: bool
+    detail: str
+    joints: tuple[float, ...] | None = None
+    joints_read_at: str | None = None
+    type: Literal["stop_report"] = "stop_report"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class AcknowledgeReport:
+    """The answer to an acknowledgement: the faults that are left; none if it cleared."""
+
+    request_id: str
+    faults: tuple[Failure, ...]
+    type: Literal["acknowledge_report"] = "acknowledge_report"
+
+
+# --- From the service -----------------------------------------------------------------------------
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Welcome:
+    """The answer to a hello that is accepted."""
+
+    robot: str
+    type: Literal["welcome"] = "welcome"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Heartbeat:
+    """The service is there."""
+
+    type: Literal["heartbeat"] = "heartbeat"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Execute:
+    """An execution follows: this, then `target_count` messages of type target_motion."""
+
+    execution_id: str
+    plan_id: str
+    tool: str
+    model_version: str
+    start_joints: tuple[float, ...]
+    target_count: int
+    type: Literal["execute"] = "execute"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class SegmentTimes:
+    """A named part of a trajectory: transfer, cut_in, dwell, retreat."""
+
+    name: str
+    start_s: float
+    end_s: float
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class TargetMotion:
+    """The verified, timed motion for one target, joint-linear between rows."""
+
+    execution_id: str
+    index: int
+    target_id: str
+    standby_joints: tuple[float, ...]
+    thinning_joints: tuple[float, ...]
+    times_s: tuple[float, ...]
+    joints: Rows
+    segments: tuple[SegmentTimes, ...]
+    type: Literal["target_motion"] = "target_motion"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Pause:
+    """Slow down to a stand on the path."""
+
+    execution_id: str
+    type: Literal["pause"] = "pause"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Resume:
+    """Go on along the path."""
+
+    execution_id: str
+    type: Literal["resume"] = "resume"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Cancel:
+    """Slow down to a stand on the path and end there."""
+
+    execution_id: str
+    type: Literal["cancel"] = "cancel"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Stop:
+    """Hold at once, in whatever state."""
+
+    request_id: str
+    type: Literal["stop"] = "stop"
+
+
+@with_config(_MESSAGE)
+@dataclass(frozen=True)
+class Acknowledge:
+    """A person has seen the faults: check again and clear what is gone."""
+
+    request_id: str
+    type: Literal["acknowledge"] = "acknowledge"
+
+
+FromWorker = Hello | Telemetry | ExecutionAccount | StopReport | AcknowledgeReport
+FromService = (
+    Welcome
+    | Heartbeat
+    | Execute
+    | TargetMotion
+    | Pause
+    | Resume
+    | Cancel
+    | Stop
+    | Acknowledge
+)
+
+
+def encode(message: FromWorker | FromService) -> str:
+    """A message as JSON text."""
+    return orjson.dumps(message).decode()
+
+
+def decode_from_worker(text: str | bytes) -> FromWorker:
+    """The worker's message in a text; InvalidMessage if it is none."""
+    try:
+        return _worker_messages().validate_json(text)
+    except ValidationError as error:
+        raise InvalidMessage(_first_fault(error)) from error
+
+
+def decode_from_service(text: str | bytes) -> FromService:
+    """The service's message in a text; InvalidMessage if it is none."""
+    try:
+        return _service_messages().validate_json(text)
+    except ValidationError as error:
+        raise InvalidMessage(_first_fault(error)) from error
+
+
+@cache
+def _worker_messages() -> TypeAdapter[FromWorker]:
+    return TypeAdapter(Annotated[FromWorker, Field(discriminator="type")])
+
+
+@cache
+def _service_messages() -> TypeAdapter[FromService]:
+    return TypeAdapter(Annotated[FromService, Field(discriminator="type")])
+
+
+def _first_fault(error: ValidationError) -> str:
+    fault = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    return f"{'/'.join(map(str, fault['loc']))}: {fault['msg']}"
