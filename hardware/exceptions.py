@@ -132,6 +132,24 @@ class LinkLost(HardwareError):
     code = "link_lost"
 
 
+class Interrupted(HardwareError):
+    """An earlier worker ended in the middle of an execution: where it stopped is unknown."""
+
+    code = "interrupted"
+
+
+class WorkerEnded(HardwareError):
+    """The worker was told to end while the arm was moving."""
+
+    code = "worker_ended"
+
+
+class InternalError(HardwareError):
+    """A defect of the worker; its log has it in full."""
+
+    code = "internal_error"
+
+
 class Stopped(HardwareError):
     """Somebody asked for a stop."""
 

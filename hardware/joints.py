@@ -57,6 +57,10 @@ class JointDrive:
         angle = self.sign * q + self.offset_rad + self.calibration_rad
         return position_ticks(self.servo, angle)
 
+    def reaches(self, q: float) -> bool:
+        """Whether a joint angle is inside the servo's range [rad]."""
+        return 0 <= self.ticks(float(q)) <= self.servo.highest_position
+
     def angle(self, ticks: float) -> float:
         """The joint angle at a count of the first motor [rad]."""
         angle = motor_angle(self.servo, ticks)

@@ -165,8 +165,9 @@ class StopReport:
     """The answer to a stop: what was done and what was verified by reading.
 
     Attributes:
-        stopped: no motion is commanded any more, and where torque is on the hold was sent.
-        verified: every servo was read twice after that and stood still.
+        stopped: nothing is commanded any more, a hold was sent where torque is on, and every servo
+            was read twice after that and stood still.
+        verified: that, and the end-effector was read back as off.
         joints: from the last of these reads.
     """
 
@@ -294,15 +295,7 @@ class Acknowledge:
 
 FromWorker = Hello | Telemetry | ExecutionAccount | StopReport | AcknowledgeReport
 FromService = (
-    Welcome
-    | Heartbeat
-    | Execute
-    | TargetMotion
-    | Pause
-    | Resume
-    | Cancel
-    | Stop
-    | Acknowledge
+    Welcome | Heartbeat | Execute | TargetMotion | Pause | Resume | Cancel | Stop | Acknowledge
 )
 
 

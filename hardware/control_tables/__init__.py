@@ -1,5 +1,11 @@
 """Register tables of servos as data, and what reads them."""
 
-from hardware.control_tables.loading import Register, ServoModel, servo_model, servo_models
+from hardware.control_tables.loading import (
+    SIMULATED_FIRMWARE,
+    Register,
+    ServoModel,
+    servo_model,
+    servo_models,
+)
 
-__all__ = ["Register", "ServoModel", "servo_model", "servo_models"]
+__all__ = ["SIMULATED_FIRMWARE", "Register", "ServoModel", "servo_model", "servo_models"]

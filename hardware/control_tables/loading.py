@@ -11,6 +11,8 @@ from typing import Any, Final
 
 SHARED_TABLE: Final = "registers.toml"
 FIRST_VOLATILE_ADDRESS: Final = 24
+# What a simulated servo reports as its firmware version; no real one is known to.
+SIMULATED_FIRMWARE: Final = 255
 
 
 @dataclass(frozen=True)

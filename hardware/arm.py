@@ -1,0 +1,235 @@
+"""The arm on its bus: joint vectors in and out, every goal checked, every read judged."""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hardware.bus import ServoBus
+from hardware.clock import RobotClock
+from hardware.exceptions import FollowingError, PairDisagreement, WrongSetting
+from hardware.joints import ArmMap, JointDrive
+from hardware.safety import check_goal, check_posture
+from hardware.servo_chain import ServoChain
+from hardware.setup_check import check_pair, check_setup
+from hardware.tolerances import (
+    CATCH_UP,
+    FOLLOWING_RAD,
+    HOLD_SPEED_RAD_S,
+    LOWEST_SPEED_RAD_S,
+    PERSISTENT_POLLS,
+    SETTLE_TICKS,
+    STILL_INTERVAL_S,
+    STILL_S,
+    STILL_TICKS,
+    TORQUE_JUMP_TICKS,
+)
+from hardware.units import speed_ticks, ticks_per_radian
+from solver.robots.model import Array, Robot
+
+
+@dataclass(frozen=True)
+class HeldPosture:
+    """What a hold did.
+
+    Attributes:
+        still: whether every servo answered, and two reads in succession
+            found them standing.
+        joints: the last posture read [rad]; None if a servo could not be read.
+        detail: what is wrong, or "".
+    """
+
+    still: bool
+    joints: Array | None
+    detail: str
+
+
+class ServoArm:
+    """An arm's servos behind a bus. One thread uses it.
+
+    Attributes:
+        torque: "on", "off", "partly", or "unknown" before the first check.
+    """
+
+    def __init__(self, robot: Robot, arm: ArmMap, bus: ServoBus, clock: RobotClock) -> None:
+        self.robot = robot
+        self.map = arm
+        self.chain = ServoChain(arm, bus)
+        self.torque = "unknown"
+        self._clock = clock
+        self._commanded: Array | None = None
+        self._next_poll = 0
+        self._lagging: Counter[str] = Counter()
+        self._disagreeing: Counter[str] = Counter()
+
+    def check(self) -> None:
+        """Check every servo's kind, settings and health, and learn where torque is on.
+
+        Raises:
+            HardwareError: see `hardware.setup_check.check_setup`.
+        """
+        self.torque = "unknown"
+        check_setup(self.robot, self.chain)
+        on = [self.chain.value(motor, "torque_enable") for motor in self.map.motors]
+        self.torque = "on" if all(on) else "partly" if any(on) else "off"
+
+    def read_joints(self) -> Array:
+        """The posture, from one read of every servo, shape (n,) [rad].
+
+        Raises:
+            HardwareError: a servo does not answer or reports an error.
+        """
+        return self.map.joints(self.chain.sweep())
+
+    def enable_torque(self) -> None:
+        """Put the arm under power where it stands.
+
+        Each servo gets its present position as goal, with a low speed, both are read back, and only
+        then is torque enabled: a stale goal would be run to at full speed.
+
+        Raises:
+            OutsideLimits: it stands outside its joint limits.
+            HardwareError: a servo refused, or moved.
+        """
+        before = self.chain.sweep()
+        check_posture(self.robot, self.map, self.map.joints(before))
+        for drive in self.map.drives:
+            check_pair(drive, drive.first_motor_ticks(before))
+        goals, speed = self._goals_at(before), speed_ticks(HOLD_SPEED_RAD_S)
+        self.torque = "partly"
+        self.chain.send(goals, dict.fromkeys(goals, speed))
+        for motor in self.map.motors:
+            if motor.id in goals:
+                self.chain.expect(motor, "goal_position", goals[motor.id])
+                self.chain.expect(motor, "moving_speed", speed)
+        for motor in self.map.motors:
+            self.chain.enable_torque(motor)
+        for servo_id, ticks in self.chain.sweep().items():
+            if abs(ticks - before[servo_id]) > TORQUE_JUMP_TICKS:
+                detail = f"moved by {ticks - before[servo_id]} counts when torque came on"
+                raise WrongSetting(servo_id, detail)
+        self.torque = "on"
+        self._commanded = self.map.joints(before)
+
+    def command(self, goal: Array, step_s: float) -> None:
+        """Send every joint to a goal, to arrive in one step; nothing is sent that fails the check.
+
+        Args:
+            goal: shape (n,) [rad].
+            step_s: time in which it is to be reached [s].
+
+        Raises:
+            UnsafeGoal: see `hardware.safety.check_goal`.
+        """
+        if self._commanded is None:
+            raise RuntimeError("torque has to be enabled before a goal is commanded")
+        check_goal(self.robot, self.map, self._commanded, goal, step_s)
+        needed = np.abs(goal - self._commanded) / step_s * CATCH_UP
+        counts = [speed_ticks(max(speed, LOWEST_SPEED_RAD_S)) for speed in needed.tolist()]
+        speeds = {
+            motor.id: speed
+            for drive, speed in zip(self.map.drives, counts, strict=True)
+            for motor in drive.motors
+        }
+        self.chain.send(self.map.goals(goal), speeds)
+        self._commanded = goal.copy()
+
+    def poll(self) -> None:
+        """Read the next joint in rotation, and judge what it says about the last goal.
+
+        Raises:
+            FollowingError: it lags behind its goal, read after read.
+            PairDisagreement: its two servos stand apart, read after read.
+            HardwareError: a servo does not answer or reports an error.
+        """
+        i = self._next_poll
+        self._next_poll = (i + 1) % len(self.map.drives)
+        drive = self.map.drives[i]
+        says = self.chain.read_drive(drive)
+        self._watch_pair(drive, says)
+        if self._commanded is not None:
+            error = drive.angle(sum(says) / len(says)) - float(self._commanded[i])
+            self._watch_lag(drive, error)
+
+    def has_arrived(self, positions: Mapping[int, int]) -> bool:
+        """Whether every servo stands at the last goal, by counts just read."""
+        return not self._away_from_goal(positions)
+
+    def check_arrived(self, positions: Mapping[int, int]) -> None:
+        """Raise FollowingError for the joint that is furthest from the last goal."""
+        if away := self._away_from_goal(positions):
+            joint = max(away, key=lambda name: abs(away[name]))
+            raise FollowingError(joint, away[joint], "did not arrive: it is off its goal")
+
+    def hold(self) -> HeldPosture:
+        """Stop where the arm stands, and see whether it does.
+
+        A servo that cannot be read keeps its last goal, which is a short step away. Where torque is
+        off, or was never looked at, nothing is sent: a goal would put the arm under power.
+
+        Raises:
+            BusLost: nothing could be sent.
+        """
+        positions = self.chain.values_of_what_answers("present_position")
+        missing = self._missing(positions)
+        if self.torque in ("on", "partly") and (goals := self._goals_at(positions)):
+            self.chain.send(goals, dict.fromkeys(goals, speed_ticks(HOLD_SPEED_RAD_S)))
+        deadline = self._clock.now() + STILL_S
+        still = False
+        while not missing and not still and self._clock.now() < deadline:
+            self._clock.sleep(STILL_INTERVAL_S)
+            last = positions
+            positions = self.chain.values_of_what_answers("present_position")
+            missing = self._missing(positions)
+            still = not missing and all(
+                abs(ticks - last[servo_id]) <= STILL_TICKS for servo_id, ticks in positions.items()
+            )
+        if missing:
+            return HeldPosture(False, None, f"no answer from servos {missing}")
+        posture = self.map.joints(positions)
+        if self._commanded is not None:
+            self._commanded = posture
+        return HeldPosture(still, posture, "" if still else "the arm still moves")
+
+    def _missing(self, positions: Mapping[int, int]) -> str:
+        return ", ".join(str(motor.id) for motor in self.map.motors if motor.id not in positions)
+
+    def _goals_at(self, positions: Mapping[int, int]) -> dict[int, int]:
+        """Goals that keep every joint of which all motors are known where it stands."""
+        goals: dict[int, int] = {}
+        for drive in self.map.drives:
+            if all(motor.id in positions for motor in drive.motors):
+                says = drive.first_motor_ticks(positions)
+                goals |= drive.goals(round(sum(says) / len(says)))
+        return goals
+
+    def _watch_lag(self, drive: JointDrive, error: float) -> None:
+        self._lagging[drive.joint] += 1
+        if abs(error) <= FOLLOWING_RAD:
+            self._lagging[drive.joint] = 0
+        if self._lagging[drive.joint] >= PERSISTENT_POLLS:
+            self._lagging.clear()
+            raise FollowingError(drive.joint, error, "lags behind its goal")
+
+    def _watch_pair(self, drive: JointDrive, says: tuple[float, ...]) -> None:
+        try:
+            check_pair(drive, says)
+        except PairDisagreement:
+            self._disagreeing[drive.joint] += 1
+            if self._disagreeing[drive.joint] >= PERSISTENT_POLLS:
+                self._disagreeing.clear()
+                raise
+        else:
+            self._disagreeing[drive.joint] = 0
+
+    def _away_from_goal(self, positions: Mapping[int, int]) -> dict[str, float]:
+        away: dict[str, float] = {}
+        if self._commanded is None:
+            return away
+        for drive, q in zip(self.map.drives, self._commanded.tolist(), strict=True):
+            goal = drive.ticks(q)
+            worst = max((says - goal for says in drive.first_motor_ticks(positions)), key=abs)
+            if abs(worst) > SETTLE_TICKS:
+                away[drive.joint] = drive.sign * worst / ticks_per_radian(drive.servo)
+        return away

@@ -1,0 +1,321 @@
+"""The worker: one loop that owns the arm, takes orders from the link, and accounts for them.
+
+    idle ◄─► executing ◄─► paused
+     ▲           │            │
+     └─ acknowledge ── fault ◄┘
+
+A fault holds the arm, switches the end-effector off, ends what runs, and stays until somebody
+acknowledges it and the servos check out.
+"""
+
+import logging
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+from hardware.arm import HeldPosture, ServoArm
+from hardware.clock import RobotClock, timestamp
+from hardware.end_effector import EndEffector
+from hardware.exceptions import (
+    BusLost,
+    Canceled,
+    HardwareError,
+    InternalError,
+    Interrupted,
+    LinkLost,
+    OrderRefused,
+    PortUnavailable,
+    Stopped,
+    WorkerEnded,
+)
+from hardware.execution import Execution
+from hardware.journal import Journal
+from hardware.link import RobotLink
+from hardware.messages import (
+    CANCELED,
+    FAILED,
+    SILENCE_S,
+    Acknowledge,
+    AcknowledgeReport,
+    Cancel,
+    Execute,
+    ExecutionAccount,
+    Failure,
+    Pause,
+    Resume,
+    Stop,
+    StopReport,
+    TargetMotion,
+    Telemetry,
+)
+from hardware.order import build_order
+from hardware.tolerances import IDLE_TICK_S, TELEMETRY_S, TICK_S
+from solver.robots.model import Tool
+
+logger = logging.getLogger(__name__)
+
+IDLE: Final = "idle"
+FAULT: Final = "fault"
+ALL_DONE: Final = object()
+
+
+class Worker:
+    """Drives one arm until it is told to end.
+
+    Args:
+        arm: the servos.
+        tool: what is mounted.
+        end_effector: what is on during a dwell.
+        link: to the service.
+        journal: of executions started.
+        clock: robot time.
+    """
+
+    def __init__(
+        self,
+        arm: ServoArm,
+        tool: Tool,
+        end_effector: EndEffector,
+        link: RobotLink,
+        journal: Journal,
+        clock: RobotClock,
+    ) -> None:
+        self._arm = arm
+        self._tool = tool
+        self._end_effector = end_effector
+        self._link = link
+        self._journal = journal
+        self._clock = clock
+        self._faults: tuple[Failure, ...] = ()
+        self._incoming: tuple[Execute, list[TargetMotion]] | None = None
+        self._execution: Execution | None = None
+        self._steps: Iterator[None] = iter(())
+        self._overruns = 0
+        self._telemetry_due = clock.now()
+        self._ending = threading.Event()
+
+    def end(self) -> None:
+        """Have `run` return; safe from a signal handler or another thread."""
+        self._ending.set()
+
+    def run(self) -> None:
+        """Work until `end`; the arm holds then, the end-effector is off.
+
+        Raises:
+            LinkRefused: the service will not have this worker.
+        """
+        self._look_around()
+        due = self._clock.now()
+        while not self._ending.is_set() and self._link.refusal is None:
+            self._take_stops()
+            self._take_messages()
+            self._advance()
+            self._say_telemetry()
+            due += IDLE_TICK_S if self._execution is None else TICK_S
+            now = self._clock.now()
+            if now > due:
+                self._catch_up(now - due)
+                due = now
+            self._clock.sleep(due - now)
+        if self._execution is not None:
+            self._fail(WorkerEnded("the worker was told to end"))
+        self._say_telemetry()
+        self._link.close()
+        if self._link.refusal is not None:
+            raise self._link.refusal
+
+    def _catch_up(self, late_s: float) -> None:
+        """A tick came late: the motion waited, as its time only passes tick by tick."""
+        if self._execution is not None:
+            self._overruns += 1
+            if late_s > SILENCE_S * self._clock.factor:
+                # Whatever the link has heard since, the service has given this worker up.
+                self._fail(LinkLost(f"the worker itself stood still for {late_s:.1f} s"))
+
+    # --- What comes over the link -----------------------------------------------------------------
+    def _take_stops(self) -> None:
+        while (stop := self._link.next_stop()) is not None:
+            self._link.say(self._stop(stop))
+
+    def _take_messages(self) -> None:
+        while (message := self._link.next_message()) is not None:
+            match message:
+                case Execute():
+                    self._incoming = (message, [])
+                case TargetMotion() if self._incoming is not None:
+                    self._incoming[1].append(message)
+                case Acknowledge():
+                    self._acknowledge(message)
+                case Pause() | Resume() | Cancel():
+                    self._steer(message)
+            if self._incoming is not None:
+                execute, motions = self._incoming
+                if len(motions) >= execute.target_count:
+                    self._incoming = None
+                    self._begin(execute, motions)
+
+    def _steer(self, message: Pause | Resume | Cancel) -> None:
+        execution = self._execution
+        if execution is None or execution.account.execution_id != message.execution_id:
+            if isinstance(message, Cancel):
+                self._refuse_incoming(Canceled("canceled before it began"))
+            return
+        match message:
+            case Pause():
+                execution.pause()
+            case Resume():
+                execution.resume()
+            case Cancel():
+                execution.cancel()
+
+    def _begin(self, execute: Execute, motions: list[TargetMotion]) -> None:
+        try:
+            if self._execution is not None:
+                raise OrderRefused("another execution is under way")
+            if self._faults:
+                raise OrderRefused(f"a fault is to be acknowledged: {self._faults[0].code}")
+            order = build_order(self._arm.robot, self._tool, self._arm.map, execute, motions)
+            self._journal.start(order.execution_id)
+        except HardwareError as error:
+            self._refuse(execute, error)
+            return
+        self._execution = Execution(
+            order, self._arm, self._tool, self._end_effector, self._link.say
+        )
+        self._steps = self._execution.steps()
+
+    def _refuse(self, execute: Execute, error: HardwareError) -> None:
+        failure = Failure(error.code, error.detail, timestamp())
+        status = CANCELED if isinstance(error, Canceled) else FAILED
+        self._link.say(ExecutionAccount(execute.execution_id, status, (), error=failure))
+
+    def _refuse_incoming(self, error: HardwareError) -> None:
+        if self._incoming is not None:
+            self._refuse(self._incoming[0], error)
+            self._incoming = None
+
+    def _acknowledge(self, message: Acknowledge) -> None:
+        if self._execution is None:
+            for execution_id in tuple(self._journal.unfinished):
+                self._journal.end(execution_id, Interrupted.code)
+            self._faults = ()
+            self._look_around()
+        self._link.say(AcknowledgeReport(message.request_id, self._faults))
+
+    def _look_around(self) -> None:
+        """Check servos and end-effector; what is wrong becomes a fault."""
+        try:
+            if self._journal.unfinished:
+                raise Interrupted("a worker ended in the middle of an execution; look at the arm")
+            self._end_effector.switch(on=False)
+            try:
+                self._arm.check()
+            except BusLost:
+                self._arm.chain.bus.reopen()
+                self._arm.check()
+        except HardwareError as error:
+            self._latch(error.code, error.detail)
+
+    # --- Motion -----------------------------------------------------------------------------------
+    def _advance(self) -> None:
+        try:
+            if self._execution is not None:
+                if not self._link.is_alive:
+                    raise LinkLost("the service was not heard any more")
+                if next(self._steps, ALL_DONE) is ALL_DONE:
+                    self._finish(self._execution)
+            if not self._is_bus_lost:
+                self._arm.poll()
+        except HardwareError as error:
+            self._fail(error)
+        except Exception as error:
+            logger.exception("a defect of the worker")
+            self._fail(InternalError(f"{type(error).__name__}; the worker's log has it"))
+
+    @property
+    def _is_bus_lost(self) -> bool:
+        lost = (BusLost.code, PortUnavailable.code)
+        return any(fault.code in lost for fault in self._faults)
+
+    def _fail(self, error: HardwareError) -> None:
+        """Make everything safe, end what runs, and latch the fault unless it was asked for."""
+        if any(fault.code == error.code for fault in self._faults):
+            return
+        _, trouble = self._make_safe()
+        detail = "; ".join((error.detail, *trouble))
+        if self._execution is not None:
+            self._execution.end(error)
+            self._finish(self._execution)
+        if trouble or not isinstance(error, Canceled):
+            self._latch(error.code, detail)
+
+    def _finish(self, execution: Execution) -> None:
+        self._journal.end(execution.account.execution_id, execution.account.status)
+        self._execution = None
+        self._steps = iter(())
+
+    def _stop(self, stop: Stop) -> StopReport:
+        held, trouble = self._make_safe()
+        self._refuse_incoming(Stopped("stopped on request"))
+        if self._execution is not None:
+            self._execution.end(Stopped("stopped on request"))
+            self._finish(self._execution)
+        self._latch(Stopped.code, "; ".join(("stopped on request", *trouble)))
+        detail = "; ".join(trouble) or (
+            "the arm holds where it stands"
+            if self._arm.torque == "on"
+            else "torque is off: nothing was held, and nothing moves"
+        )
+        if held is None or held.joints is None:
+            return StopReport(stop.request_id, stopped=False, verified=False, detail=detail)
+        return StopReport(
+            stop.request_id,
+            stopped=held.still,
+            verified=held.still and not trouble,
+            detail=detail,
+            joints=tuple(held.joints.tolist()),
+            joints_read_at=timestamp(),
+        )
+
+    def _make_safe(self) -> tuple[HeldPosture | None, tuple[str, ...]]:
+        """End-effector off, arm held; and what of that did not work."""
+        trouble: list[str] = []
+        try:
+            self._end_effector.switch(on=False)
+        except HardwareError as error:
+            trouble.append(error.detail)
+        try:
+            held = self._arm.hold()
+        except HardwareError as error:
+            trouble.append(f"the arm could not be told to hold: {error.detail}")
+            return None, tuple(trouble)
+        if held.detail:
+            trouble.append(held.detail)
+        return held, tuple(trouble)
+
+    def _latch(self, code: str, detail: str) -> None:
+        logger.error("%s: %s", code, detail)
+        self._faults = (*self._faults, Failure(code, detail, timestamp()))
+
+    # --- Telemetry --------------------------------------------------------------------------------
+    def _say_telemetry(self) -> None:
+        now = self._clock.now()
+        if now < self._telemetry_due:
+            return
+        self._telemetry_due = now + TELEMETRY_S * self._clock.factor
+        account = None if self._execution is None else self._execution.account
+        status = FAULT if self._faults else IDLE if account is None else account.status
+        telemetry = Telemetry(
+            status=status,
+            torque=self._arm.torque,
+            end_effector_state=self._end_effector.state,
+            faults=self._faults,
+            servos=self._arm.chain.health(),
+            overruns=self._overruns,
+            execution_id=None if account is None else account.execution_id,
+        )
+        if (posture := self._arm.chain.last_posture()) is not None:
+            joints, read_at = posture
+            telemetry = replace(telemetry, joints=tuple(joints.tolist()), joints_read_at=read_at)
+        self._link.say(telemetry)
