@@ -142,6 +142,103 @@ def export_openapi(
         _fail(f"{error.filename}: {error.strerror}")
 
 
+@cli.command()
+def worker(
+    url: Annotated[str, typer.Option(help="The service's address.")],
+    robot: Annotated[str, typer.Option(help="Which robot this is.")],
+    port: Annotated[str, typer.Option(help="Serial device of its servos.")],
+    tool: Annotated[
+        str | None, typer.Option(help="The mounted tool; default: the robot's default.")
+    ] = None,
+    end_effector: Annotated[str, typer.Option(help="none or simulated.")] = "none",
+    end_effector_record: Annotated[
+        Path | None, typer.Option(help="File for the simulated end-effector's changes.")
+    ] = None,
+    calibration: Annotated[
+        Path | None, typer.Option(help="Calibration file; default: the one that ships.")
+    ] = None,
+    data_dir: Annotated[Path, typer.Option(help="Folder of the journal.")] = Path("prunus-worker"),
+    baud_rate: Annotated[int, typer.Option(help="Of the servo bus.")] = 1_000_000,
+    time_factor: Annotated[
+        float, typer.Option(help="How much faster time runs; simulated servos only.")
+    ] = 1,
+) -> None:
+    """Drive the servos behind a device for the service: one worker an arm.
+
+    Ends with 0 on SIGINT and SIGTERM, leaving the arm holding; with 1 when it cannot work.
+    """
+    from app.version import prunus_version
+    from hardware.exceptions import HardwareError
+    from hardware.worker_program import WorkerOptions, run_worker
+    from solver.exceptions import UnknownRobot
+
+    options = WorkerOptions(
+        url=url,
+        robot=robot,
+        port=port,
+        tool=tool,
+        end_effector=end_effector,
+        end_effector_record=end_effector_record,
+        calibration=calibration,
+        data_dir=data_dir,
+        baud_rate=baud_rate,
+        time_factor=time_factor,
+        version=prunus_version(),
+    )
+    try:
+        run_worker(options, lambda news: typer.echo(news, err=True))
+    except (HardwareError, UnknownRobot) as error:
+        _fail(str(error), code=1)
+    except OSError as error:
+        _fail(f"{error.filename}: {error.strerror}", code=1)
+
+
+@cli.command()
+def servo_bus(
+    robot: Annotated[str, typer.Option(help="Whose servos, by the robot's name.")] = "tabletop",
+    joints_deg: Annotated[
+        str | None,
+        typer.Option(help="Where the arm stands at the start: Q1,...,Q6. Default: home."),
+    ] = None,
+    calibration: Annotated[
+        Path | None, typer.Option(help="Calibration file; default: the one that ships.")
+    ] = None,
+    link: Annotated[
+        Path | None, typer.Option(help="Make a symbolic link to the device here.")
+    ] = None,
+    fault: Annotated[
+        list[str] | None, typer.Option(help="A fault command to begin with; may be repeated.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of reading noise and corruption.")] = 0,
+    noise_ticks: Annotated[
+        int, typer.Option(help="Readings of a position are off by up to this.")
+    ] = 1,
+    time_factor: Annotated[float, typer.Option(help="How much faster the servos' time runs.")] = 1,
+) -> None:
+    """Simulate an arm's servos on a pseudo-terminal; the first line printed is its device.
+
+    Standard input takes fault commands, one a line. Ends with 0 on SIGINT, SIGTERM and "unplug".
+    """
+    from hardware.exceptions import HardwareError
+    from hardware.simulator.faults import FaultRefused
+    from hardware.simulator.program import BadOption, run_servo_bus
+    from solver.exceptions import UnknownRobot
+
+    try:
+        run_servo_bus(
+            robot=robot,
+            joints_deg=joints_deg,
+            calibration=calibration,
+            link=link,
+            faults=fault or (),
+            seed=seed,
+            noise_ticks=noise_ticks,
+            time_factor=time_factor,
+        )
+    except (BadOption, FaultRefused, HardwareError, UnknownRobot) as error:
+        _fail(str(error))
+
+
 def _fail(*lines: str, code: int = BAD_REQUEST) -> NoReturn:
     for line in lines:
         typer.echo(line, err=True)

@@ -29,5 +29,5 @@ def demo_request() -> dict[str, Any]:
             }
             for name, position, direction in _TARGETS
         ],
-        "options": {"method": "ncos", "order": "given"},
+        "options": {"method": "ncos", "order": "given", "dwell_s": 1.0},
     }

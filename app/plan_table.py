@@ -19,18 +19,31 @@ HEADINGS: Final = (
     "time ms",
 )
 TIME_COLUMN: Final = HEADINGS.index("time ms")
+MEASURED_HEADINGS: Final = ("standby error mm", "target error mm")
 
 
-def plan_rows(plan: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    """One row of text a target, in the order of HEADINGS."""
-    return [_row(approach) for approach in plan["approaches"]]
+def plan_rows(
+    plan: Mapping[str, Any], execution: Mapping[str, Any] | None = None
+) -> list[tuple[str, ...]]:
+    """One row of text a target, in the order of HEADINGS.
+
+    With an execution of the plan MEASURED_HEADINGS follow: how far the tool centre point was from
+    standby and target when the servos had arrived.
+    """
+    rows = [_row(approach) for approach in plan["approaches"]]
+    if execution is None:
+        return rows
+    measured = {target["target_id"]: _measured(target) for target in execution["targets"]}
+    return [(*row, *measured[row[0]]) for row in rows]
 
 
-def print_plan(plan: Mapping[str, Any], console: Console) -> None:
+def print_plan(
+    plan: Mapping[str, Any], console: Console, execution: Mapping[str, Any] | None = None
+) -> None:
     """Print the plan, its postures, and a reason for every target refused."""
     options = plan["options"]
     title = f"{plan['robot']} with {plan['tool']}: {options['method']}, order {options['order']}"
-    console.print(_table(title, HEADINGS, plan_rows(plan)))
+    console.print(_table(title, _headings(execution), plan_rows(plan, execution)))
     planned = [approach for approach in plan["approaches"] if approach["status"] == "planned"]
     if planned:
         joints = range(1, len(planned[0]["thinning_joints"]) + 1)
@@ -52,10 +65,20 @@ def print_plan(plan: Mapping[str, Any], console: Console) -> None:
     console.print(_totals(plan), highlight=False)
 
 
-def markdown_table(plan: Mapping[str, Any]) -> str:
+def markdown_table(plan: Mapping[str, Any], execution: Mapping[str, Any] | None = None) -> str:
     """The rows as a Markdown table."""
-    lines = [HEADINGS, tuple("---" for _ in HEADINGS), *plan_rows(plan)]
+    headings = _headings(execution)
+    lines = [headings, tuple("---" for _ in headings), *plan_rows(plan, execution)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _headings(execution: Mapping[str, Any] | None) -> tuple[str, ...]:
+    return HEADINGS if execution is None else (*HEADINGS, *MEASURED_HEADINGS)
+
+
+def _measured(target: Mapping[str, Any]) -> tuple[str, ...]:
+    errors = (target.get("standby_error_m"), target.get("target_error_m"))
+    return tuple("" if error is None else f"{error * 1000:.2f}" for error in errors)
 
 
 def _row(approach: Mapping[str, Any]) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ access, time-outs on a clock that cannot be set, a port that stays usable after 
 error bit, bounded repetition.
 """
 
+import errno
 import os
 import termios
 import time
@@ -109,6 +110,8 @@ class DynamixelBus:
         except (serial.SerialException, OSError, termios.error) as error:
             number = getattr(error, "errno", None)
             reason = os.strerror(number) if number else str(error)
+            if number == errno.EAGAIN:
+                reason = "another program has it"
             raise PortUnavailable(f"cannot open {self.device}: {reason}") from error
         if not opened:
             raise PortUnavailable(f"{self.device}: the SDK knows no rate of {self._port.baudrate}")

@@ -28,7 +28,8 @@ class Journal:
 
     def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = path.open("ab")
+        path.touch()
+        self._path = path
         self._started: set[str] = set()
         self.unfinished: set[str] = set()
         for execution_id, event in _entries(path):
@@ -54,15 +55,12 @@ class Journal:
         self._write(execution_id, status)
         self.unfinished.discard(execution_id)
 
-    def close(self) -> None:
-        """Give the file back."""
-        self._file.close()
-
     def _write(self, execution_id: str, event: str) -> None:
         entry = {"at": timestamp(), "execution_id": execution_id, "event": event}
-        self._file.write(orjson.dumps(entry, option=orjson.OPT_APPEND_NEWLINE))
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        with self._path.open("ab") as file:
+            file.write(orjson.dumps(entry, option=orjson.OPT_APPEND_NEWLINE))
+            file.flush()
+            os.fsync(file.fileno())
 
 
 def _entries(path: Path) -> Iterator[tuple[str, str]]:

@@ -183,7 +183,8 @@ class RobotLink:
             account = self._account if self._account_pending else None
             self._account_pending = False
             telemetry, self._telemetry = self._telemetry, None
-        for message in (*pending, account, telemetry):
+        # State first: whoever hears that a fault was cleared may act on it at once.
+        for message in (telemetry, account, *pending):
             if message is not None:
                 connection.send(encode(message))
 

@@ -12,7 +12,8 @@ and a busy machine needs room."""
 
 ATTEMPTS: Final = 3
 """How often a packet is sent before its servo counts as missing or its answers as corrupt. Single
-corrupt packets are routine on these buses; eight silent servos are known in 1.2 s, below SILENCE_S."""
+corrupt packets are routine on these buses; eight silent servos are known in 1.2 s, which is less
+than the link's SILENCE_S."""
 
 SERIAL_POLL_S: Final = 0.002
 """How long one read of the port waits for bytes [s]; the SDK asks again until its own time-out."""

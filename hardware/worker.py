@@ -136,7 +136,9 @@ class Worker:
     # --- What comes over the link -----------------------------------------------------------------
     def _take_stops(self) -> None:
         while (stop := self._link.next_stop()) is not None:
-            self._link.say(self._stop(stop))
+            report = self._stop(stop)
+            self._say_telemetry(now_due=True)
+            self._link.say(report)
 
     def _take_messages(self) -> None:
         while (message := self._link.next_message()) is not None:
@@ -201,6 +203,7 @@ class Worker:
                 self._journal.end(execution_id, Interrupted.code)
             self._faults = ()
             self._look_around()
+        self._say_telemetry(now_due=True)
         self._link.say(AcknowledgeReport(message.request_id, self._faults))
 
     def _look_around(self) -> None:
@@ -299,9 +302,9 @@ class Worker:
         self._faults = (*self._faults, Failure(code, detail, timestamp()))
 
     # --- Telemetry --------------------------------------------------------------------------------
-    def _say_telemetry(self) -> None:
+    def _say_telemetry(self, *, now_due: bool = False) -> None:
         now = self._clock.now()
-        if now < self._telemetry_due:
+        if now < self._telemetry_due and not now_due:
             return
         self._telemetry_due = now + TELEMETRY_S * self._clock.factor
         account = None if self._execution is None else self._execution.account

@@ -83,7 +83,6 @@ def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
         arm = ServoArm(instance.robot, arm_map, bus, clock)
         simulated = _check_simulated(options, instance, arm)
         journal = Journal(options.data_dir / f"{instance.name}.journal")
-        closing.callback(journal.close)
         end_effector = END_EFFECTORS[options.end_effector](options.end_effector_record)
         closing.callback(end_effector.close)
         hello = Hello(

@@ -91,7 +91,9 @@ def simulated_arm(
             raise InvalidArm(f"{drive.joint}: {drive.servo.name} has no sync cable")
         for motor in drive.motors[1:]:
             mirrored, master = drive.mirrored(ticks), first if cable else None
-            servos.append(SimulatedServo(motor.id, motor.servo, mirrored, clock, noise, master))
+            second = SimulatedServo(motor.id, motor.servo, mirrored, clock, noise, master)
+            first.mate, second.mate = second, first
+            servos.append(second)
     return SimulatedBus(servos, seed)
 
 

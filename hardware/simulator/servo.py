@@ -63,6 +63,9 @@ class SimulatedServo:
         clock: what its turning is timed by.
         noise: drawn and added at each reading of the position [ticks].
         master: for one of a pair on a sync cable, the servo that it follows.
+
+    Attributes:
+        mate: the other servo on the same shaft, which carries this one along when it has no torque.
     """
 
     def __init__(
@@ -81,6 +84,7 @@ class SimulatedServo:
         self._evaluated_at = clock()
         self._noise = noise
         self._master = master
+        self.mate: SimulatedServo | None = None
         self._registered: tuple[int, bytes] | None = None
         self.table = self._new_table(servo_id, ONE_MEGABAUD)
         if master is not None:
@@ -132,10 +136,11 @@ class SimulatedServo:
         """Turn as far as the time since the last look allows."""
         now = self._clock()
         elapsed_s, self._evaluated_at = now - self._evaluated_at, now
-        if self.faults.jammed:
+        if self._stuck:
             return
-        if self._leader is not None:
-            self._position = self.model.highest_position - self._leader.position
+        carrier = self._leader or self._carrier
+        if carrier is not None:
+            self._position = self.model.highest_position - carrier.position
         elif self._driven:
             way = self.table["goal_position"] - self._position
             farthest = self._speed_rad_s * ticks_per_radian(self.model) * elapsed_s
@@ -170,6 +175,15 @@ class SimulatedServo:
         if self._master is None or not self.table["drive_mode"] & SLAVE_MODE:
             return None
         return self._master
+
+    @property
+    def _carrier(self) -> "SimulatedServo | None":
+        """The servo on the same shaft, while it alone has torque."""
+        return self.mate if self.mate is not None and self.mate._driven > self._driven else None
+
+    @property
+    def _stuck(self) -> bool:
+        return self.faults.jammed or (self.mate is not None and self.mate.faults.jammed)
 
     @property
     def _driven(self) -> bool:
@@ -236,7 +250,7 @@ class SimulatedServo:
         seen = round(self._position) + faults.slip_ticks + self._noise()
         table["present_position"] = max(0, min(seen, self.model.highest_position))
         direction, mover = self._direction, self._leader or self
-        stuck = faults.jammed or mover.faults.jammed
+        stuck = self._stuck or mover.faults.jammed
         speed = 0 if stuck else round(mover._speed_rad_s / SPEED_UNIT_RAD_S)
         load = mover.table["torque_limit"] if stuck else TURNING_LOAD
         table["present_speed"] = _signed(direction, speed)

@@ -304,7 +304,7 @@ def test_cancel_ends_on_the_path(segment: str) -> None:
         ("overheat 11", ServoAlarm),
         ("voltage 61", ServoAlarm),
         ("jam 11", FollowingError),
-        ("jam 22", PairDisagreement),
+        ("jam 22", FollowingError),
         ("slip 32 40", PairDisagreement),
         ("silent", ServoMissing),
     ],
@@ -318,9 +318,7 @@ def test_faults_in_the_middle_are_named(
     run.bench.fault(command)
     with pytest.raises(HardwareError) as caught:
         run.finish()
-    # A jammed servo of a pair may show as a joint that lags before it shows as a disagreement.
-    allowed = (error, FollowingError) if command.startswith("jam") else (error,)
-    assert isinstance(caught.value, allowed)
+    assert isinstance(caught.value, error)
     run.execution.end(caught.value)
     account = run.execution.account
     assert account.status == FAILED
