@@ -10,13 +10,18 @@ from pydantic.json_schema import models_json_schema
 from starlette.concurrency import run_in_threadpool
 
 from app.body_limit import BodyLimitMiddleware
+from app.browser_guard import BrowserGuardMiddleware
 from app.errors import install_error_handlers
-from app.routers import health, plans, robots
+from app.routers import executions, health, link, plans, robot_state, robots
+from app.routers.common import problem_answers
+from app.schemas.executions import ExecutionRequest
 from app.schemas.problem_details import ProblemDetails
 from app.schemas.requests import PlanRequest
+from app.services.executions import ExecutionService
+from app.services.links import LinkService
 from app.services.solving import SolvingService
 from app.settings import Settings
-from app.store import PlanStore
+from app.store import ExecutionStore, PlanStore, open_engine
 from app.version import prunus_version
 
 
@@ -34,9 +39,10 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
+    app.add_middleware(BrowserGuardMiddleware, host=settings.host)
     install_error_handlers(app)
-    for router in (plans.router, robots.router, health.router):
-        app.include_router(router)
+    for module in (plans, executions, robots, robot_state, link, health):
+        app.include_router(module.router)
     # FastAPI's documented way to extend the document is to replace this method.
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
@@ -45,13 +51,22 @@ def create_app(settings: Settings) -> FastAPI:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
-    app.state.store = await run_in_threadpool(PlanStore, settings.resolved_database_url)
-    app.state.solving = SolvingService(settings.workers)
+    state = app.state
+    engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
+    state.store = PlanStore(engine)
+    state.execution_store = ExecutionStore(engine)
+    state.links = LinkService()
+    state.solving = SolvingService(settings.workers)
+    state.executions = ExecutionService(
+        state.execution_store, state.store, state.solving, state.links
+    )
     try:
+        await state.executions.end_interrupted()
         yield
     finally:
-        await run_in_threadpool(app.state.solving.close)
-        await run_in_threadpool(app.state.store.close)
+        await state.executions.close()
+        await run_in_threadpool(state.solving.close)
+        await run_in_threadpool(engine.dispose)
 
 
 def _openapi(app: FastAPI) -> dict[str, Any]:
@@ -59,16 +74,22 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         title=app.title, version=app.version, description=app.description, routes=app.routes
     )
     # Bodies are parsed by hand, for strictness and for the problem form; so they are added here.
-    for model, mode in ((PlanRequest, "validation"), (ProblemDetails, "serialization")):
+    for model, mode in (
+        (PlanRequest, "validation"),
+        (ExecutionRequest, "validation"),
+        (ProblemDetails, "serialization"),
+    ):
         _, definitions = models_json_schema(
             [(model, mode)],  # type: ignore[list-item]
             ref_template="#/components/schemas/{model}",
         )
         document["components"]["schemas"].update(definitions["$defs"])
+    refused = problem_answers(403)  # by the guard in front of every route
     for path in document["paths"].values():
         for operation in path.values():
             # FastAPI's own form of a validation error, which is never sent.
             _drop_stock_validation_error(operation["responses"])
+            operation["responses"] |= {str(code): what for code, what in refused.items()}
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
     return document

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -15,7 +16,6 @@ HEADINGS: Final = (
     "effort",
     "nearest limit °",
     "deviation mm",
-    "solver",
     "time ms",
 )
 TIME_COLUMN: Final = HEADINGS.index("time ms")
@@ -84,16 +84,16 @@ def _measured(target: Mapping[str, Any]) -> tuple[str, ...]:
 def _row(approach: Mapping[str, Any]) -> tuple[str, ...]:
     solver = approach["solver"]
     head = (approach["target_id"], approach["status"])
-    tail = (solver["method"], f"{solver['elapsed_s'] * 1000:.1f}")
+    time_ms = f"{solver['elapsed_s'] * 1000:.1f}"
     if approach["status"] != "planned":
-        return (*head, "", "", "", "", *tail)
+        return (*head, "", "", "", "", time_ms)
     return (
         *head,
         _degrees(approach["approach_angle_rad"]),
         f"{approach['effort']:.4f}",
         _degrees(approach["margin_rad"]),
         f"{approach['path_deviation_m'] * 1000:.4f}",
-        *tail,
+        time_ms,
     )
 
 
@@ -114,10 +114,14 @@ def _degrees(angle_rad: float) -> str:
 
 
 def _table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    table = Table(title=title, title_justify="left")
+    """A table of which no number is cut; the plan's rows fit into 80 columns."""
+    table = Table(
+        title=title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0)
+    )
     for heading in headings:
-        words = heading in ("target", "status", "solver")
-        table.add_column(heading, justify="left" if words else "right", no_wrap=words)
+        words = heading in ("target", "status")
+        broken = heading.replace(" ", "\n").replace("\n°", " °")
+        table.add_column(broken, justify="left" if words else "right", no_wrap=True)
     for row in rows:
         table.add_row(*map(Text, row))  # as it is: an id may look like markup
     return table

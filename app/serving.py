@@ -7,10 +7,13 @@ import typer
 import uvicorn
 
 from app.main import create_app
+from app.processes import READY_LINE
 from app.settings import Settings
 
 # Requests still being answered at the end get this long.
 GRACE_S = 5
+# An account of several thousand targets, measured postures and all, has 2 MiB.
+LONGEST_MESSAGE_BYTES = 8 * 1024 * 1024
 
 
 class CannotServe(Exception):
@@ -23,7 +26,7 @@ class _Server(uvicorn.Server):
         if self.started and sockets:
             host, port = sockets[0].getsockname()[:2]
             shown = f"[{host}]" if ":" in host else host
-            typer.echo(f"Prunus listens on http://{shown}:{port}")
+            typer.echo(f"{READY_LINE}http://{shown}:{port}")
 
 
 def run_service(settings: Settings) -> None:
@@ -44,6 +47,9 @@ def run_service(settings: Settings) -> None:
         access_log=False,
         timeout_graceful_shutdown=GRACE_S,
         server_header=False,
+        ws_max_size=LONGEST_MESSAGE_BYTES,
+        ws_ping_interval=None,  # the link has heartbeats of its own, more of them
+        ws_per_message_deflate=False,  # numbers hardly shrink, and compressing holds up the loop
     )
     server = _Server(config)
     try:

@@ -1,6 +1,7 @@
 """`prunus worker`: puts a worker together from its options, and runs it until a signal ends it."""
 
 import logging
+import math
 import signal
 import sys
 from collections.abc import Callable
@@ -72,6 +73,7 @@ def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
         HardwareError: it cannot start, or the service will not have it.
         OSError: the journal cannot be kept.
     """
+    _check_options(options)
     logging.basicConfig(stream=sys.stderr, format="%(levelname)s %(message)s")
     instance = load_instance(options.robot)
     tool = _tool(instance, options.tool)
@@ -101,6 +103,14 @@ def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
             signal.signal(number, lambda *_: worker.end())
         worker.run()
         say(f"ended; torque is {arm.torque}" + (": the arm holds" if arm.torque == "on" else ""))
+
+
+def _check_options(options: WorkerOptions) -> None:
+    if options.end_effector not in END_EFFECTORS:
+        known = ", ".join(END_EFFECTORS)
+        raise InvalidArm(f"unknown end-effector {options.end_effector}; known: {known}")
+    if not 0 < options.time_factor < math.inf:
+        raise InvalidArm("the time factor must be above 0")
 
 
 def _tool(instance: RobotInstance, name: str | None) -> Tool:

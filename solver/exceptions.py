@@ -52,3 +52,15 @@ class InvalidProblem(SolverError):
     def __init__(self, faults: tuple[Fault, ...]) -> None:
         super().__init__("; ".join(f"{fault.pointer}: {fault.detail}" for fault in faults))
         self.faults = faults
+
+
+class RetimingFailed(SolverError):
+    """A chosen approach that does not hold any more: `detail` says what, of which target."""
+
+    def __init__(self, target_id: str, detail: str) -> None:
+        super().__init__(target_id, detail)  # as given, so that it passes between processes
+        self.target_id = target_id
+        self.detail = detail
+
+    def __str__(self) -> str:
+        return f"{self.target_id}: {self.detail}"

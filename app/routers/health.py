@@ -5,7 +5,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.plans import problem_answers
+from app.routers.common import problem_answers
 from app.schemas.answers import HealthAnswer
 from app.services.solving import SolvingService
 from app.store import PlanStore

@@ -2,7 +2,6 @@
 
 import uuid
 from collections.abc import Iterator
-from typing import Any
 
 import orjson
 from fastapi import APIRouter, Request, Response
@@ -10,33 +9,17 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError, invalid_request
+from app.routers.common import body_of, json_body, problem_answers
 from app.schemas.answers import PlanAnswer
-from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
+from app.schemas.requests import PlanRequest
 from app.services.solving import SolvingService
 from app.services.wire import parse_request, problem_from_wire
 from app.store import PlanStore
 from solver import Fault, Problem
 
 NDJSON = "application/x-ndjson"
-# Python's own phrases for these change from version to version.
-DESCRIPTIONS = {
-    404: "Unknown",
-    413: "Body over the size limit",
-    415: "Body not JSON by its media type",
-    422: "Request that makes no sense",
-    500: "Fault of the service",
-    503: "Not available now",
-}
 
 router = APIRouter(prefix="/v1/plans", tags=["plans"])
-
-
-def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI descriptions of these errors."""
-    content = {MEDIA_TYPE: {"schema": {"$ref": f"#/components/schemas/{ProblemDetails.__name__}"}}}
-    return {
-        status: {"content": content, "description": DESCRIPTIONS[status]} for status in statuses
-    }
 
 
 @router.post(
@@ -51,21 +34,11 @@ def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
         },
         **problem_answers(413, 415, 422, 500, 503),
     },
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "content": {
-                "application/json": {"schema": {"$ref": "#/components/schemas/PlanRequest"}}
-            },
-        }
-    },
+    openapi_extra=body_of(PlanRequest),
 )
 async def create_plan(request: Request) -> Response:
     """Targets that cannot be reached come back infeasible, with a reason."""
-    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type not in ("", "application/json"):
-        raise ProblemError(415, "unsupported_media_type", "The body must be application/json.")
-    body = await request.body()
+    body = await json_body(request)
     limit: int = request.app.state.settings.sync_targets_limit
     problem, normalised = await run_in_threadpool(_read, body, limit)
     plan_id = uuid.uuid4().hex

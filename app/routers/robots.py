@@ -1,9 +1,9 @@
 """Robots and their models."""
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
+from pydantic import MISSING
 
-from app.errors import ProblemError
-from app.routers.plans import problem_answers
+from app.routers.common import problem_answers
 from app.schemas.answers import (
     JointAnswer,
     RobotAnswer,
@@ -11,7 +11,9 @@ from app.schemas.answers import (
     RobotSummary,
     ToolAnswer,
 )
-from solver import Robot, UnknownRobot, load_robot, robot_names
+from app.services.execution_checks import robot_instance
+from app.services.links import LinkService
+from hardware.instances import RobotInstance, instance_names, load_instance
 
 router = APIRouter(prefix="/v1/robots", tags=["robots"])
 
@@ -23,8 +25,8 @@ router = APIRouter(prefix="/v1/robots", tags=["robots"])
     responses={200: {"model": RobotsAnswer}, **problem_answers(500)},
 )
 def list_robots() -> Response:
-    """By default there is one robot a model, of the same name."""
-    robots = [_summary(load_robot(name)) for name in robot_names()]
+    """One robot a model, of the same name, and its simulated twin where it has servos."""
+    robots = [_summary(load_instance(name)) for name in instance_names()]
     return _json(RobotsAnswer(robots=robots))
 
 
@@ -34,33 +36,36 @@ def list_robots() -> Response:
     summary="One robot: joints, limits, tools",
     responses={200: {"model": RobotAnswer}, **problem_answers(404, 500)},
 )
-def get_robot(name: str) -> Response:
+def get_robot(name: str, request: Request) -> Response:
     """Denavit-Hartenberg rows are classic; joint vectors are in this order of joints."""
-    try:
-        robot = load_robot(name)
-    except UnknownRobot:
-        raise ProblemError(404, "not_found", "There is no robot of this name.") from None
-    return _json(_answer(robot))
+    links: LinkService = request.app.state.links
+    link = links.get(name)
+    calibration = MISSING if link is None else list(link.hello.calibration_rad)
+    return _json(_answer(robot_instance(name), calibration))
 
 
 def _json(answer: RobotsAnswer | RobotAnswer) -> Response:
     return Response(answer.model_dump_json(), media_type="application/json")
 
 
-def _summary(robot: Robot) -> RobotSummary:
+def _summary(instance: RobotInstance) -> RobotSummary:
+    robot = instance.robot
     return RobotSummary(
         name=robot.name,
-        model=robot.name,
+        model=instance.model,
+        simulated=instance.simulated,
         model_version=robot.version,
         description=robot.description,
         tools=[tool.name for tool in robot.tools],
     )
 
 
-def _answer(robot: Robot) -> RobotAnswer:
+def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> RobotAnswer:
+    robot = instance.robot
     return RobotAnswer(
         name=robot.name,
-        model=robot.name,
+        model=instance.model,
+        simulated=instance.simulated,
         model_version=robot.version,
         description=robot.description,
         source=robot.source,
@@ -89,4 +94,5 @@ def _answer(robot: Robot) -> RobotAnswer:
         ],
         default_tool=robot.default_tool,
         home_joints=list(robot.home_rad),
+        calibration_rad=calibration_rad,
     )

@@ -145,6 +145,7 @@ class RobotSummary(BaseModel):
 
     name: str
     model: str
+    simulated: bool = Field(description="whether only simulated servos may stand behind it")
     model_version: str
     description: str
     tools: list[str]
@@ -161,6 +162,7 @@ class RobotAnswer(BaseModel):
 
     name: str
     model: str
+    simulated: bool = Field(description="whether only simulated servos may stand behind it")
     model_version: str
     description: str
     source: str
@@ -168,6 +170,9 @@ class RobotAnswer(BaseModel):
     tools: list[ToolAnswer]
     default_tool: str
     home_joints: list[float]
+    calibration_rad: list[float] | MISSING = Field(
+        default=MISSING, description="offset of each joint's servo, while a worker is connected"
+    )
 
 
 class HealthAnswer(BaseModel):

@@ -12,11 +12,13 @@ JointVector = Annotated[
 ]
 
 
-class _Body(BaseModel):
+class StrictBody(BaseModel):
+    """Nothing unknown, nothing converted, nothing that is not finite."""
+
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 
-class TargetBody(_Body):
+class TargetBody(StrictBody):
     """A blossom to remove."""
 
     id: str = Field(description="not empty, once in a batch")
@@ -25,7 +27,7 @@ class TargetBody(_Body):
     position_std_m: float | MISSING = Field(default=MISSING, description="not available yet")
 
 
-class SceneBranchBody(_Body):
+class SceneBranchBody(StrictBody):
     """A branch as a chain of capsules."""
 
     id: str
@@ -33,13 +35,13 @@ class SceneBranchBody(_Body):
     radius_m: float
 
 
-class SceneBody(_Body):
+class SceneBody(StrictBody):
     """What stands around the arm."""
 
     branches: Annotated[list[SceneBranchBody], Field(fail_fast=True)] | MISSING = MISSING
 
 
-class OptionsBody(_Body):
+class OptionsBody(StrictBody):
     """How to solve; absent fields take their defaults, which the answer shows."""
 
     method: str | MISSING = MISSING
@@ -66,7 +68,7 @@ class OptionsBody(_Body):
     )
 
 
-class PlanRequest(_Body):
+class PlanRequest(StrictBody):
     """A batch of targets for one robot."""
 
     robot: str

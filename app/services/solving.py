@@ -6,17 +6,27 @@ import multiprocessing
 import os
 import signal
 import threading
+from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.connection import Connection
+from typing import TypeVar
 
 import orjson
 
 from app.errors import ProblemError
+from app.services.motions import target_motions
 from app.services.wire import plan_to_wire
+from hardware.messages import Failure
 from solver import Problem, solve
 
 logger = logging.getLogger(__name__)
+
+Result = TypeVar("Result")
+
+
+class SolverLost(Exception):
+    """A solver process died over what it was given. The pool has been started again."""
 
 
 def solve_to_json(problem: Problem, plan_id: str) -> bytes:
@@ -88,23 +98,41 @@ class SolvingService:
         Raises:
             ProblemError: 503, the worker died over it.
         """
-        pool = self._pool
         try:
-            try:
-                future = pool.executor.submit(solve_to_json, problem, plan_id)
-            except BrokenProcessPool:
-                # A worker died idle: nothing was lost, so the request need not know.
-                pool = await asyncio.to_thread(self._replace, pool)
-                future = pool.executor.submit(solve_to_json, problem, plan_id)
-            return await asyncio.wrap_future(future)
-        except BrokenProcessPool:
-            await asyncio.to_thread(self._replace, pool)
+            return await self._run(lambda pool: pool.submit(solve_to_json, problem, plan_id))
+        except SolverLost:
             raise ProblemError(
                 503, "solver_unavailable", "The solver was lost; it has been started again."
             ) from None
         except asyncio.CancelledError:
             # Only the server's shutdown cancels a request; its client still gets an answer.
             raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+
+    async def motions(
+        self, request: str, answer: str, execution_id: str
+    ) -> tuple[str, ...] | Failure:
+        """A stored plan's motions, verified anew; see `app.services.motions`.
+
+        Raises:
+            SolverLost: the worker died over it.
+        """
+        return await self._run(
+            lambda pool: pool.submit(target_motions, request, answer, execution_id)
+        )
+
+    async def _run(self, submit: Callable[[ProcessPoolExecutor], Future[Result]]) -> Result:
+        pool = self._pool
+        try:
+            try:
+                future = submit(pool.executor)
+            except BrokenProcessPool:
+                # A worker died idle: nothing was lost, so the request need not know.
+                pool = await asyncio.to_thread(self._replace, pool)
+                future = submit(pool.executor)
+            return await asyncio.wrap_future(future)
+        except BrokenProcessPool:
+            await asyncio.to_thread(self._replace, pool)
+            raise SolverLost from None
 
     def _replace(self, broken: _Pool) -> _Pool:
         with self._lock:

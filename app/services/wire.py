@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from app.schemas.requests import PlanRequest
 from app.version import prunus_version
+from hardware.instances import load_instance
 from solver import (
     Approach,
     Fault,
@@ -26,7 +27,6 @@ from solver import (
     Trajectory,
     Transfer,
     UnknownRobot,
-    load_robot,
 )
 
 BASE_FRAME = "base"
@@ -50,7 +50,7 @@ def problem_from_wire(request: PlanRequest) -> Problem:
     given: Mapping[str, Any] = request.model_dump()
     faults = list(_not_available(given))
     try:
-        problem = _problem(given, load_robot(request.robot))
+        problem = _problem(given, load_instance(request.robot).robot)
     except UnknownRobot as error:
         faults.append(Fault(("robot",), f"unknown robot; known: {', '.join(error.known)}"))
     except InvalidProblem as error:
@@ -119,7 +119,7 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
     transfer = approach.transfer if "transfer" in include else None
     trajectory = approach.trajectory if "trajectory" in include else None
     solver = approach.solver
-    return _present(
+    return present(
         target_id=approach.target_id,
         status=approach.status,
         approach_angle_rad=_optional(approach.approach_angle_rad),
@@ -144,7 +144,7 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
 
 
 def _reason(reason: Reason) -> dict[str, Any]:
-    return _present(
+    return present(
         code=reason.code,
         joint=reason.joint,
         detail=reason.detail,
@@ -172,7 +172,8 @@ def _trajectory(trajectory: Trajectory) -> dict[str, Any]:
     }
 
 
-def _present(**values: Any) -> dict[str, Any]:
+def present(**values: Any) -> dict[str, Any]:
+    """The values that are there."""
     return {name: value for name, value in values.items() if value is not None}
 
 

@@ -1,30 +1,30 @@
 """The table of plans."""
 
 import re
+from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from sqlalchemy import URL, Column, DateTime, Engine, MetaData, String, Table, Text, insert, select
+from sqlalchemy import Engine, insert, select
 
-from app.store.database import open_engine, writing
+from app.store.database import writing
+from app.store.tables import PLANS
 
-METADATA = MetaData()
-PLANS = Table(
-    "plans",
-    METADATA,
-    Column("id", String(32), primary_key=True),
-    Column("created_at", DateTime(timezone=True), nullable=False),
-    Column("robot", String(200), nullable=False),
-    Column("request", Text, nullable=False),
-    Column("answer", Text, nullable=False),
-)
-PLAN_ID = re.compile(r"[0-9a-f]{32}")
+ID = re.compile(r"[0-9a-f]{32}")
+
+
+@dataclass(frozen=True)
+class StoredPlan:
+    """A plan's answer with the request that it answers, both JSON."""
+
+    request: str
+    answer: str
 
 
 class PlanStore:
     """Plans as they were answered. Its calls block: keep them off the event loop."""
 
-    def __init__(self, url: URL) -> None:
-        self._engine: Engine = open_engine(url)
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
 
     def add(self, plan_id: str, *, robot: str, request: str, answer: str) -> None:
         """Store a plan; it is durable when this returns."""
@@ -40,17 +40,19 @@ class PlanStore:
 
     def answer(self, plan_id: str) -> str | None:
         """The answer of that id, or None."""
-        if not PLAN_ID.fullmatch(plan_id):
+        plan = self.plan(plan_id)
+        return None if plan is None else plan.answer
+
+    def plan(self, plan_id: str) -> StoredPlan | None:
+        """The plan of that id, or None."""
+        if not ID.fullmatch(plan_id):
             return None
         with self._engine.connect() as connection:
-            query = select(PLANS.c.answer).where(PLANS.c.id == plan_id)
-            return connection.execute(query).scalar_one_or_none()
+            query = select(PLANS.c.request, PLANS.c.answer).where(PLANS.c.id == plan_id)
+            row = connection.execute(query).one_or_none()
+        return None if row is None else StoredPlan(row.request, row.answer)
 
     def check(self) -> None:
         """Raise SQLAlchemyError unless the database answers."""
         with self._engine.connect() as connection:
             connection.execute(select(PLANS.c.id).limit(1))
-
-    def close(self) -> None:
-        """Close the connections."""
-        self._engine.dispose()

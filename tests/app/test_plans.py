@@ -127,7 +127,7 @@ def test_same_plan_over_http_command_line_and_python(server: Server, tmp_path: P
         Target(target["id"], target["position_m"], target["branch_direction"])
         for target in body["targets"]
     ]
-    options = Options(method="ncos", order="given")
+    options = Options(**body["options"])
     problem = Problem(load_robot("tabletop"), targets, "laser", body["start_joints"], options)
     in_python = plan_to_wire(solve(problem), "python")
 

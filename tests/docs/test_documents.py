@@ -12,6 +12,9 @@ import pytest
 
 from app.demo_request import demo_request
 from app.plan_table import HEADINGS, TIME_COLUMN, plan_rows
+from app.routers.link import SERVICE_FAULT
+from app.services import links
+from app.services.execution_record import EXECUTION_ERROR_CODES
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
 from app.settings import Settings
 from solver import Options, solve
@@ -23,9 +26,13 @@ ROOT = Path(__file__).parents[2]
 DOCUMENTS = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]
 
 
-def rows(document: str) -> list[list[str]]:
-    """The cells of every table row in a document, without code marks."""
-    lines = (ROOT / document).read_text(encoding="utf-8").splitlines()
+def rows(document: str, section: str = "") -> list[list[str]]:
+    """The cells of every table row in a document, or in a section of it, without code marks."""
+    text = (ROOT / document).read_text(encoding="utf-8")
+    if section:
+        text = text.partition(f"## {section}\n")[2].partition("\n## ")[0]
+        assert text, section
+    lines = text.splitlines()
     tables = [line for line in lines if line.startswith("| ")]
     return [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in tables]
 
@@ -60,8 +67,35 @@ def test_methods_are_documented() -> None:
 
 
 def test_reason_codes_are_documented() -> None:
-    first = [row[0] for row in rows("docs/errors.md")]
-    assert [code for code in first if code in REASON_CODES] == list(REASON_CODES)
+    documented = [row[0] for row in rows("docs/errors.md", "Reasons of infeasible targets")]
+    assert documented[2:] == list(REASON_CODES)
+
+
+def test_execution_error_codes_are_documented() -> None:
+    documented = [row[0] for row in rows("docs/errors.md", "Execution errors")]
+    assert set(EXECUTION_ERROR_CODES) <= set(documented)
+
+
+def test_http_errors_are_documented() -> None:
+    documented = {(row[0], row[1]) for row in rows("docs/errors.md", "HTTP errors")[2:]}
+    raised = {
+        found
+        for file in (ROOT / "app").rglob("*.py")
+        for found in re.findall(
+            r'(?:ProblemError|problem_response)\(\s*(\d{3}),\s*"(\w+)"', file.read_text()
+        )
+    }
+    assert len(raised) >= 10
+    assert raised <= documented
+
+
+def test_close_codes_are_documented() -> None:
+    documented = {row[0] for row in rows("docs/errors.md", "Close codes of the robot link")[2:]}
+    used = {
+        links.NOT_A_MESSAGE, links.UNKNOWN_ROBOT, links.SILENT, links.HAS_A_WORKER,
+        links.WRONG_WORKER, SERVICE_FAULT,
+    }  # fmt: skip
+    assert documented == set(map(str, used))
 
 
 def test_settings_are_documented_with_their_defaults() -> None:

@@ -1,0 +1,46 @@
+"""What several routes share: how bodies are read and errors described."""
+
+from typing import Any
+
+from fastapi import Request
+
+from app.errors import ProblemError
+from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
+
+# Python's own phrases for these change from version to version.
+DESCRIPTIONS = {
+    403: "From a page of another origin, or under another host name",
+    404: "Unknown",
+    409: "Not in this state",
+    413: "Body over the size limit",
+    415: "Body not JSON by its media type",
+    422: "Request that makes no sense",
+    500: "Fault of the service",
+    503: "Not available now",
+}
+
+
+def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The OpenAPI descriptions of these errors."""
+    content = {MEDIA_TYPE: {"schema": {"$ref": f"#/components/schemas/{ProblemDetails.__name__}"}}}
+    return {
+        status: {"content": content, "description": DESCRIPTIONS[status]} for status in statuses
+    }
+
+
+def body_of(model: type) -> dict[str, Any]:
+    """The OpenAPI description of a body that the route reads itself."""
+    schema = {"$ref": f"#/components/schemas/{model.__name__}"}
+    return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
+
+
+async def json_body(request: Request) -> bytes:
+    """The body, which may be declared as nothing or as JSON.
+
+    Raises:
+        ProblemError: 415, it is declared as something else.
+    """
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type not in ("", "application/json"):
+        raise ProblemError(415, "unsupported_media_type", "The body must be application/json.")
+    return await request.body()

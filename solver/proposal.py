@@ -1,0 +1,71 @@
+"""From a candidate and its cut-in to a whole approach with timed motion, for the verifier."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solver.cut_in import CutIn
+from solver.effort import posture_effort
+from solver.methods.candidate import Candidate
+from solver.problem import Problem, Target
+from solver.robots.model import Array
+from solver.solution import Approach, Segment, SolverReport, Trajectory, Transfer
+from solver.tolerances import TRAJECTORY_STEP_S
+from solver.trajectory.timing import TimedRows, time_joint_line
+from solver.verification import cut_in_margin
+
+PROPOSED = "proposed"
+
+
+def propose(
+    problem: Problem,
+    target: Target,
+    candidate: Candidate,
+    cut_in: CutIn,
+    reference: Sequence[float],
+    report: SolverReport,
+) -> Approach:
+    """The approach of a candidate, with a transfer from the reference posture [rad]."""
+    start = np.asarray(reference, dtype=np.float64)
+    standby, thinning = cut_in.path_joints[0], cut_in.path_joints[-1]
+    transfer = Transfer(
+        "joint_line", np.array([start, standby]), float(np.linalg.norm(standby - start))
+    )
+    trajectory = _trajectory(problem, start, cut_in)
+    return Approach(
+        target_id=target.id,
+        status=PROPOSED,
+        solver=report,
+        approach_angle_rad=candidate.approach_angle_rad,
+        tool_side=candidate.tool_side,
+        branch=candidate.branch,
+        thinning_joints=thinning,
+        standby_joints=standby,
+        path_joints=cut_in.path_joints,
+        path_deviation_m=cut_in.deviation_m,
+        effort=posture_effort(thinning, start, problem.joint_weights, problem.options.norm),
+        margin_rad=cut_in_margin(problem, cut_in.path_joints, trajectory),
+        transfer=transfer,
+        trajectory=trajectory,
+    )
+
+
+def _trajectory(problem: Problem, reference: Array, cut_in: CutIn) -> Trajectory:
+    standby, thinning = cut_in.motion.joints[0], cut_in.motion.joints[-1]
+    dwell_s = problem.options.dwell_s
+    still = np.array([thinning, thinning]) if dwell_s > 0 else thinning[None]
+    pieces = {
+        "transfer": time_joint_line(problem.robot, reference, standby, TRAJECTORY_STEP_S),
+        "cut_in": cut_in.motion,
+        "dwell": TimedRows(np.array([0.0, dwell_s])[: len(still)], still),
+        "retreat": cut_in.motion.reversed(),
+    }
+    now = 0.0
+    times, rows, segments = [np.zeros(1)], [reference[None]], []
+    for name, piece in pieces.items():
+        times.append(now + piece.times_s[1:])
+        rows.append(piece.joints[1:])
+        end = float(times[-1][-1]) if len(piece.times_s) > 1 else now
+        segments.append(Segment(name, now, end))
+        now = end
+    return Trajectory(np.concatenate(times), np.concatenate(rows), tuple(segments))

@@ -1,0 +1,90 @@
+"""Timed motion for approaches that were chosen before, built and verified anew.
+
+A stored plan need not carry trajectories, its transfers may all begin at the start posture, and
+what moves an arm is verified right before. Approach angles and branches stay as they were chosen;
+everything else follows from them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.approach.task import approach_task
+from solver.cut_in import build_cut_in
+from solver.exceptions import RetimingFailed
+from solver.methods.candidate import Candidate
+from solver.problem import Problem, Target
+from solver.proposal import propose
+from solver.robots.model import Array
+from solver.solution import PLANNED, Approach, SolverReport
+from solver.tolerances import SAME_POSTURE_RAD
+from solver.verification import judge
+
+BRANCHES = range(8)
+
+
+@dataclass(frozen=True)
+class ChosenApproach:
+    """What was chosen for one target, with the two postures that followed from it [rad]."""
+
+    target_id: str
+    approach_angle_rad: float
+    tool_side: int
+    branch: int
+    standby_joints: Sequence[float]
+    thinning_joints: Sequence[float]
+
+
+def retime(problem: Problem, chosen: Sequence[ChosenApproach]) -> tuple[Approach, ...]:
+    """Planned approaches with one continuous motion through them, in the order given.
+
+    Raises:
+        RetimingFailed: one does not verify, or has other postures than it had.
+    """
+    targets = {target.id: target for target in problem.targets}
+    reference: Sequence[float] = problem.start
+    approaches: list[Approach] = []
+    for choice in chosen:
+        if choice.target_id not in targets:
+            raise RetimingFailed(choice.target_id, "is no target of the problem")
+        approach = _retimed(problem, targets[choice.target_id], choice, reference)
+        approaches.append(approach)
+        assert approach.standby_joints is not None, "the verifier wants it"
+        reference = tuple(float(value) for value in approach.standby_joints)
+    return tuple(approaches)
+
+
+def _retimed(
+    problem: Problem, target: Target, choice: ChosenApproach, reference: Sequence[float]
+) -> Approach:
+    # A joint that can turn further than once stays on the turn that was chosen.
+    task = approach_task(problem, target, choice.thinning_joints)
+    known = choice.branch in BRANCHES and choice.tool_side in task.tool_sides
+    if not known or len(choice.thinning_joints) != len(problem.robot.joints):
+        raise RetimingFailed(target.id, "is on no branch or side of this arm and tool")
+    candidate = Candidate(
+        choice.approach_angle_rad, choice.tool_side, choice.branch, 0.0, 0, PLANNED
+    )
+    rows = task.postures(
+        choice.approach_angle_rad, choice.tool_side, choice.branch, np.asarray(task.retreats_m)
+    )
+    for name, was, now in (
+        ("standby", choice.standby_joints, rows[0]),
+        ("thinning", choice.thinning_joints, rows[-1]),
+    ):
+        if not _same(was, now):
+            raise RetimingFailed(target.id, f"has another {name} posture than it had")
+    report = SolverReport(problem.options.method, 0.0, 0, PLANNED)
+    cut_in = build_cut_in(task, candidate)
+    approach = judge(
+        problem, propose(problem, target, candidate, cut_in, reference, report), reference
+    )
+    if approach.reason is not None:
+        raise RetimingFailed(target.id, approach.reason.detail)
+    return approach
+
+
+def _same(was: Sequence[float], now: Array) -> bool:
+    # Written so that a posture that is not a number is another one.
+    return len(was) == len(now) and bool(np.all(np.abs(np.asarray(was) - now) <= SAME_POSTURE_RAD))

@@ -1,0 +1,103 @@
+import contextlib
+import sqlite3
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from sqlalchemy import URL, Engine
+
+from app.store import ExecutionStore, PlanStore, RobotBusy, open_engine
+from app.store.executions import MOST_LISTED
+from app.store.tables import METADATA
+
+NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
+
+
+def identifier(number: int) -> str:
+    return f"{number:032x}"
+
+
+@pytest.fixture
+def engine(tmp_path: Path) -> Iterator[Engine]:
+    engine = open_engine(URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3")))
+    yield engine
+    engine.dispose()
+
+
+def add(store: ExecutionStore, number: int, robot: str = "tabletop") -> str:
+    execution_id = identifier(number)
+    store.add(
+        execution_id, plan_id=identifier(0), robot=robot, status="queued",
+        created_at=NOON + timedelta(seconds=number), document=f'{{"number":{number}}}',
+    )  # fmt: skip
+    return execution_id
+
+
+def test_migrations_lead_to_the_tables(engine: Engine) -> None:
+    with engine.connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
+
+
+def test_a_database_of_the_first_version_keeps_its_plans(tmp_path: Path) -> None:
+    url = URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3"))
+    engine = open_engine(url)
+    PlanStore(engine).add(identifier(1), robot="tabletop", request="{}", answer="[]")
+    engine.dispose()
+    with contextlib.closing(sqlite3.connect(tmp_path / "prunus.sqlite3")) as database:
+        database.execute("DROP TABLE executions")
+        database.execute("UPDATE alembic_version SET version_num = '0001'")
+        database.commit()
+    engine = open_engine(url)
+    plan = PlanStore(engine).plan(identifier(1))
+    assert plan is not None
+    assert (plan.request, plan.answer) == ("{}", "[]")
+    assert add(ExecutionStore(engine), 1)
+    engine.dispose()
+
+
+def test_a_robot_has_one_active_execution(engine: Engine) -> None:
+    store = ExecutionStore(engine)
+    first = add(store, 1)
+    with pytest.raises(RobotBusy) as raised:
+        add(store, 2)
+    assert raised.value.robot == "tabletop"
+    assert store.document(identifier(2)) is None
+    add(store, 3, "tabletop-sim")
+    assert sorted(store.active()) == ['{"number":1}', '{"number":3}']
+    store.save(first, status="executing", document="{}", ended=False)
+    with pytest.raises(RobotBusy):
+        add(store, 2)
+    store.save(first, status="failed", document='{"ended":1}', ended=True)
+    assert store.active() == ['{"number":3}']
+    assert store.document(add(store, 2)) == '{"number":2}'
+    assert store.document(first) == '{"ended":1}'
+    # A late correction of one that has ended takes nothing from the robot's new one.
+    store.save(first, status="failed", document='{"ended":2}', ended=True)
+    with pytest.raises(RobotBusy):
+        add(store, 4)
+
+
+@pytest.mark.parametrize("text", ["", "1", "' OR 1=1", identifier(9), identifier(1).upper() + "A"])
+def test_unknown_ids_are_none(engine: Engine, text: str) -> None:
+    store = ExecutionStore(engine)
+    add(store, 1)
+    assert store.document(text) is None
+
+
+def test_newest_come_first_and_not_all(engine: Engine) -> None:
+    store = ExecutionStore(engine)
+    for number in range(MOST_LISTED + 5):
+        execution_id = add(store, number, "tabletop" if number % 2 else "tabletop-sim")
+        store.save(execution_id, status="completed", document="{}", ended=True)
+    rows = store.newest()
+    assert [row.id for row in rows] == [identifier(54 - k) for k in range(MOST_LISTED)]
+    assert rows[0].created_at == NOON + timedelta(seconds=54)
+    assert rows[0].updated_at.tzinfo is UTC
+    assert (rows[0].status, rows[0].plan_id) == ("completed", identifier(0))
+    simulated = store.newest("tabletop-sim")
+    assert len(simulated) == 28
+    assert {row.robot for row in simulated} == {"tabletop-sim"}
+    assert store.newest("nobody") == []
