@@ -159,9 +159,12 @@ class Worker:
 
     def _steer(self, message: Pause | Resume | Cancel) -> None:
         execution = self._execution
-        if execution is None or execution.account.execution_id != message.execution_id:
+        incoming = self._incoming
+        if incoming and incoming[0].execution_id == message.execution_id:
             if isinstance(message, Cancel):
                 self._refuse_incoming(Canceled("canceled before it began"))
+            return
+        if execution is None or execution.account.execution_id != message.execution_id:
             return
         match message:
             case Pause():

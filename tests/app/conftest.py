@@ -64,8 +64,8 @@ def _first_line(process: subprocess.Popen[str]) -> str:
 
 
 @contextlib.contextmanager
-def running_server(data_dir: Path, **environment: str) -> Iterator[Server]:
-    command = [sys.executable, "-m", "app", "serve", "--port", "0", "--data-dir", str(data_dir)]
+def running_server(data_dir: Path, port: str = "0", **environment: str) -> Iterator[Server]:
+    command = [sys.executable, "-m", "app", "serve", "--port", port, "--data-dir", str(data_dir)]
     with subprocess.Popen(
         command,
         cwd=REPOSITORY,
