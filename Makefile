@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 
 .PHONY: demo test check serve setup lock pictures openapi clean
 
-demo: $(VENV)/run.stamp          ## set up, then plan data set 3 through the service
+demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
 
 test: $(VENV)/dev.stamp          ## set up, then every check and every test

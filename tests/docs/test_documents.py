@@ -10,13 +10,15 @@ from pathlib import Path
 
 import pytest
 
+from app.demo import MOST_ERROR_M
 from app.demo_request import demo_request
-from app.plan_table import HEADINGS, TIME_COLUMN, plan_rows
+from app.plan_table import HEADINGS, MEASURED_HEADINGS, TIME_COLUMN, plan_rows
 from app.routers.link import SERVICE_FAULT
 from app.services import links
 from app.services.execution_record import EXECUTION_ERROR_CODES
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
 from app.settings import Settings
+from hardware import exceptions
 from solver import Options, solve
 from solver.problem import RANGES
 from solver.registry import METHODS
@@ -76,6 +78,13 @@ def test_execution_error_codes_are_documented() -> None:
     assert set(EXECUTION_ERROR_CODES) <= set(documented)
 
 
+def test_worker_codes_are_documented() -> None:
+    documented = [row[0] for row in rows("docs/errors.md", "Faults and errors of the worker")]
+    classes = [entry for entry in vars(exceptions).values() if isinstance(entry, type)]
+    codes = {entry.code for entry in classes if issubclass(entry, exceptions.HardwareError)}
+    assert set(documented[2:]) == codes - {exceptions.HardwareError.code}
+
+
 def test_http_errors_are_documented() -> None:
     documented = {(row[0], row[1]) for row in rows("docs/errors.md", "HTTP errors")[2:]}
     raised = {
@@ -107,7 +116,7 @@ def test_settings_are_documented_with_their_defaults() -> None:
 
 
 def test_python_example_of_the_readme_plans_its_target() -> None:
-    (example,) = fences("README.md", "python")
+    (example,) = [text for text in fences("README.md", "python") if "from solver" in text]
     command = [sys.executable, "-c", example]
     printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
     assert printed.startswith("1 planned 0.128")
@@ -132,10 +141,14 @@ def test_table_of_the_readme_is_what_the_demo_computes() -> None:
     """All columns but the time, to the digits printed."""
     problem = problem_from_wire(parse_request(json.dumps(demo_request()).encode()))
     computed = plan_rows(plan_to_wire(solve(problem), "0"))
-    printed = [row for row in rows("README.md") if len(row) == len(HEADINGS)]
-    assert printed[0] == list(HEADINGS)
+    headings = [*HEADINGS, *MEASURED_HEADINGS]
+    printed = [row for row in rows("README.md") if len(row) == len(headings)]
+    assert printed[0] == headings
     for row in (*printed[2:], *computed):
         assert float(row[TIME_COLUMN]) > 0
+    for row in printed[2:]:
+        for error_mm in row[len(HEADINGS) :]:
+            assert 0 < float(error_mm) < MOST_ERROR_M * 1000
     without_time = [list(row[:TIME_COLUMN]) for row in computed]
     assert [row[:TIME_COLUMN] for row in printed[2:]] == without_time
     assert printed == rows("docs/pictures/table.md")
