@@ -28,8 +28,8 @@ class Journal:
 
     def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch()
         self._path = path
+        self._end_half_a_line()
         self._started: set[str] = set()
         self.unfinished: set[str] = set()
         for execution_id, event in _entries(path):
@@ -55,6 +55,14 @@ class Journal:
         self._write(execution_id, status)
         self.unfinished.discard(execution_id)
 
+    def _end_half_a_line(self) -> None:
+        # A power cut may have left one; what is appended must not become part of it.
+        with self._path.open("ab+") as file:
+            file.seek(0)
+            content = file.read()
+            if content and not content.endswith(b"\n"):
+                file.write(b"\n")
+
     def _write(self, execution_id: str, event: str) -> None:
         entry = {"at": timestamp(), "execution_id": execution_id, "event": event}
         with self._path.open("ab") as file:
@@ -69,4 +77,4 @@ def _entries(path: Path) -> Iterator[tuple[str, str]]:
             entry = orjson.loads(line)
             yield str(entry["execution_id"]), str(entry["event"])
         except (orjson.JSONDecodeError, KeyError, TypeError):
-            continue  # a line that a power cut left half written
+            continue  # half a line

@@ -41,8 +41,8 @@ def device(request: pytest.FixtureRequest) -> Iterator[str]:
     if request.param == "simulated":
         with servo_bus() as (path, _):
             yield path
-    elif path := os.environ.get("PRUNUS_PORT"):
-        yield path
+    elif port := os.environ.get("PRUNUS_PORT"):
+        yield port
     else:
         pytest.skip("PRUNUS_PORT names no real port")
 

@@ -134,7 +134,7 @@ def plan_of_data_set_3(dwell_s: float = 0.2) -> Plan:
 
 def messages_of(plan: Plan, execution_id: str = "e1") -> tuple[Execute, list[TargetMotion]]:
     """What the service sends for a plan."""
-    motions = []
+    motions: list[TargetMotion] = []
     for approach in plan.approaches:
         if approach.trajectory is None:
             continue

@@ -125,8 +125,9 @@ class Scene:
 
     def order(self, at_s: float = 0.5, execution_id: str = "e1") -> None:
         execute, motions = messages_of(plan_of_data_set_3(), execution_id)
-        for message in (execute, *motions):
-            self.link.at(at_s, message)
+        self.link.at(at_s, execute)
+        for motion in motions:
+            self.link.at(at_s, motion)
 
     def run(self, seconds: float = LONGEST_RUN_S) -> None:
         self.link.at(seconds, "end")
@@ -374,8 +375,9 @@ def test_no_execution_runs_twice(scene: Scene) -> None:
     scene.run(50.0)
     statuses = [account.status for account in scene.accounts()]
     assert statuses.count(COMPLETED) == 1
-    assert scene.accounts()[-1].error is not None
-    assert "begun before" in scene.accounts()[-1].error.detail
+    error = scene.accounts()[-1].error
+    assert error is not None
+    assert "begun before" in error.detail
 
 
 def test_a_second_order_while_one_runs_is_refused_and_the_first_goes_on(scene: Scene) -> None:
