@@ -53,7 +53,7 @@ def run_demo(output: Path) -> int:
         say(f"the demonstration failed: {error}")
         return 1
     wanted, planned = len(demo_request()["targets"]), int(plan["summary"]["planned"])
-    reached = sum(map(_is_reached, execution["targets"]))
+    reached = sum(map(is_reached, execution["targets"]))
     say(f"{planned} of {wanted} targets planned and verified")
     say(
         f"execution {execution['status']}; {reached} of {wanted} targets reached within "
@@ -144,7 +144,8 @@ def _measured(target: dict[str, Any]) -> str:
     return f"measured {standby_mm:.2f} mm from standby and {target_mm:.2f} mm from the target"
 
 
-def _is_reached(target: dict[str, Any]) -> bool:
+def is_reached(target: dict[str, Any]) -> bool:
+    """Whether a target's account says that standby and target were measured close enough."""
     errors = (target.get("standby_error_m"), target.get("target_error_m"))
     return target["status"] == "done" and all(e is not None and e <= MOST_ERROR_M for e in errors)
 

@@ -12,7 +12,7 @@ from rich.text import Text
 HEADINGS: Final = (
     "target",
     "status",
-    "approach angle °",
+    "angle °",
     "effort",
     "nearest limit °",
     "deviation mm",
@@ -116,7 +116,12 @@ def _degrees(angle_rad: float) -> str:
 def _table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """A table of which no number is cut; the plan's rows fit into 80 columns."""
     table = Table(
-        title=title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0)
+        title=title,
+        title_justify="left",
+        box=SIMPLE_HEAD,
+        show_edge=False,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
     )
     for heading in headings:
         words = heading in ("target", "status")

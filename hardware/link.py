@@ -33,7 +33,7 @@ from hardware.messages import (
 )
 from hardware.tolerances import LINK_POLL_S, RECONNECT_S
 
-# Close codes with which the service refuses for good; see docs/robot_link.md.
+# Close codes with which the service refuses for good; see docs/errors.md.
 FINAL_CODES: Final = (4404, 4412)
 MOST_BYTES: Final = 64 * 1024 * 1024
 

@@ -1,7 +1,7 @@
 """Parts that the tests of this package share: an arm on simulated servos, in this process."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 from hardware.arm import ServoArm
@@ -9,7 +9,7 @@ from hardware.bus import StatusReply
 from hardware.clock import RobotClock
 from hardware.exceptions import BusLost, CorruptPackets, ServoMissing
 from hardware.instances import load_instance
-from hardware.joints import ArmMap, load_arm
+from hardware.joints import MIRRORED, ArmMap, load_arm
 from hardware.messages import Execute, SegmentTimes, TargetMotion
 from hardware.protocol import (
     BROADCAST_ID,
@@ -114,10 +114,15 @@ class Bench:
         return list(self.map.joints(servos).tolist())
 
 
-def make_bench(start: tuple[float, ...] | None = None, *, seed: int = 0) -> Bench:
+def make_bench(
+    start: tuple[float, ...] | None = None, *, seed: int = 0, coupling_of_joint_2: str = MIRRORED
+) -> Bench:
     """An arm that stands at `start` [rad], or at home."""
     robot = load_instance("tabletop").robot
     arm_map = load_arm(robot, "tabletop")
+    first, second, *others = arm_map.drives
+    second = replace(second, coupling=coupling_of_joint_2)
+    arm_map = replace(arm_map, drives=(first, second, *others))
     time = FakeTime()
     clock = RobotClock(monotonic=time.monotonic, sleep=time.sleep)
     simulated = simulated_arm(arm_map, start or robot.home_rad, time.monotonic, seed)

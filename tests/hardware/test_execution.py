@@ -19,6 +19,7 @@ from hardware.exceptions import (
     UnsafeGoal,
 )
 from hardware.execution import Execution
+from hardware.joints import MIRRORED, SYNC_CABLE
 from hardware.messages import (
     CANCELED,
     COMPLETED,
@@ -102,9 +103,13 @@ def order_for(bench: Bench, **changes: object) -> Order:
     return build_order(bench.robot, tool_of(bench.robot), bench.map, execute, motions)
 
 
-def start_run(seed: int = 0) -> Run:
+def start_run(seed: int = 0, coupling_of_joint_2: str = MIRRORED) -> Run:
     home = make_bench().robot.home_rad
-    bench = make_bench(tuple(a + b for a, b in zip(home, START_OFFSET, strict=True)), seed=seed)
+    bench = make_bench(
+        tuple(a + b for a, b in zip(home, START_OFFSET, strict=True)),
+        seed=seed,
+        coupling_of_joint_2=coupling_of_joint_2,
+    )
     bench.arm.check()
     accounts: list[ExecutionAccount] = []
     end_effector = RecordedEndEffector(accounts=accounts)
@@ -145,6 +150,14 @@ def test_errors_stay_within_three_millimetres_whatever_the_noise(seed: int) -> N
     ]
     assert max(error for error in errors if error is not None) < MOST_ERROR_M
     assert None not in errors
+
+
+def test_a_pair_on_a_sync_cable_gets_goals_for_its_master_alone() -> None:
+    run = start_run(coupling_of_joint_2=SYNC_CABLE)
+    run.finish()
+    assert run.execution.account.status == COMPLETED
+    assert max(t.target_error_m or 1 for t in run.execution.account.targets) < MOST_ERROR_M
+    assert {tuple(packet) for packet in sync_rows(run)} == {(11, 21, 31, 32, 41, 51, 61)}
 
 
 def test_it_ends_holding_at_the_last_standby(finished: Run) -> None:
