@@ -131,10 +131,10 @@ class DynamixelBus:
                 return StatusReply(data, errors)
             self._retries[servo_id] += 1
             if result == COMM_RX_TIMEOUT:
-                outcome = ServoMissing(servo_id, f"servo {servo_id} does not answer")
+                outcome = ServoMissing(servo_id, "does not answer")
             elif result in (COMM_SUCCESS, COMM_RX_CORRUPT):
                 detail = "cannot read our packets" if errors else "answers unreadably"
-                outcome = CorruptPackets(servo_id, f"servo {servo_id} {detail}")
+                outcome = CorruptPackets(servo_id, detail)
             else:
                 outcome = BusLost(f"{self.device}: {self._packets.getTxRxResult(result)}")
         raise outcome

@@ -31,86 +31,79 @@ class BusLost(HardwareError):
     code = "bus_lost"
 
 
-class ServoMissing(HardwareError):
-    """A servo does not answer."""
-
-    code = "servo_missing"
-
-    def __init__(self, servo_id: int, detail: str) -> None:
-        super().__init__(detail)
-        self.servo_id = servo_id
-
-
-class CorruptPackets(HardwareError):
-    """A servo's answers stay unreadable, or it reports ours to be, after every retry."""
-
-    code = "corrupt_packets"
-
-    def __init__(self, servo_id: int, detail: str) -> None:
-        super().__init__(detail)
-        self.servo_id = servo_id
-
-
-class ServoAlarm(HardwareError):
-    """A servo reports errors: overload, overheating, voltage, a value that it refuses."""
-
-    code = "servo_alarm"
-
-    def __init__(self, servo_id: int, errors: tuple[str, ...]) -> None:
-        super().__init__(f"servo {servo_id} reports: {', '.join(errors)}")
-        self.servo_id = servo_id
-        self.errors = errors
-
-
-class WrongSetting(HardwareError):
-    """A servo is not what the arm file says, or a register of it forbids safe use."""
-
-    code = "wrong_setting"
+class ServoError(HardwareError):
+    """Something about one servo."""
 
     def __init__(self, servo_id: int, detail: str) -> None:
         super().__init__(f"servo {servo_id}: {detail}")
         self.servo_id = servo_id
 
 
-class PairDisagreement(HardwareError):
+class ServoMissing(ServoError):
+    """A servo does not answer."""
+
+    code = "servo_missing"
+
+
+class CorruptPackets(ServoError):
+    """A servo's answers stay unreadable, or it reports ours to be, after every retry."""
+
+    code = "corrupt_packets"
+
+
+class ServoAlarm(ServoError):
+    """A servo reports errors: overload, overheating, voltage, a value that it refuses."""
+
+    code = "servo_alarm"
+
+    def __init__(self, servo_id: int, errors: tuple[str, ...]) -> None:
+        super().__init__(servo_id, f"reports {', '.join(errors)}")
+        self.errors = errors
+
+
+class WrongSetting(ServoError):
+    """A servo is not what the arm file says, or a register of it forbids safe use."""
+
+    code = "wrong_setting"
+
+
+class JointError(HardwareError):
+    """Something about one joint."""
+
+    def __init__(self, joint: str, detail: str) -> None:
+        super().__init__(f"{joint}: {detail}")
+        self.joint = joint
+
+
+class PairDisagreement(JointError):
     """Two servos on one joint do not stand at the same angle."""
 
     code = "pair_disagreement"
 
     def __init__(self, joint: str, apart_rad: float) -> None:
-        super().__init__(f"the two servos of {joint} are {apart_rad:.4f} rad apart")
-        self.joint = joint
+        super().__init__(joint, f"its two servos are {apart_rad:.4f} rad apart")
         self.apart_rad = apart_rad
 
 
-class UnsafeGoal(HardwareError):
+class UnsafeGoal(JointError):
     """A goal outside the limits, or a step faster than the joint may turn. It was not sent."""
 
     code = "unsafe_goal"
 
-    def __init__(self, joint: str, detail: str) -> None:
-        super().__init__(f"{joint}: {detail}")
-        self.joint = joint
 
-
-class OutsideLimits(HardwareError):
+class OutsideLimits(JointError):
     """The arm stands outside its joint limits, so no motion from there is known to be safe."""
 
     code = "outside_limits"
 
-    def __init__(self, joint: str, detail: str) -> None:
-        super().__init__(f"{joint}: {detail}")
-        self.joint = joint
 
-
-class FollowingError(HardwareError):
+class FollowingError(JointError):
     """A joint lags behind its goal, or did not arrive at it."""
 
     code = "following_error"
 
     def __init__(self, joint: str, error_rad: float, detail: str) -> None:
-        super().__init__(f"{joint} {detail} by {abs(error_rad):.4f} rad")
-        self.joint = joint
+        super().__init__(joint, f"{detail} by {abs(error_rad):.4f} rad")
         self.error_rad = error_rad
 
 

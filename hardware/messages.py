@@ -7,7 +7,7 @@ programs, so messages are checked against these classes on arrival.
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, TypeVar, dataclass_transform
 
 import orjson
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
@@ -33,8 +33,15 @@ DONE: Final = "done"
 SKIPPED: Final = "skipped"
 UNKNOWN: Final = "unknown"
 
-_MESSAGE = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+T = TypeVar("T")
 Rows = tuple[tuple[float, ...], ...]
+
+
+@dataclass_transform(frozen_default=True)
+def _message(cls: type[T]) -> type[T]:
+    """A frozen dataclass that is checked strictly when it arrives."""
+    config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+    return with_config(config)(dataclass(frozen=True)(cls))
 
 
 class InvalidMessage(HardwareError):
@@ -43,8 +50,7 @@ class InvalidMessage(HardwareError):
     code = "invalid_message"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Failure:
     """What went wrong: a code for programs, a sentence for people, and when."""
 
@@ -53,8 +59,7 @@ class Failure:
     at: str
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class ServoHealth:
     """What one servo said last.
 
@@ -75,8 +80,7 @@ class ServoHealth:
     read_at: str
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class TargetAccount:
     """What became of one target.
 
@@ -97,8 +101,7 @@ class TargetAccount:
 
 
 # --- From the worker ------------------------------------------------------------------------------
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Hello:
     """The first message: who joins. `model_version` is the digest of the worker's model file."""
 
@@ -113,8 +116,7 @@ class Hello:
     type: Literal["hello"] = "hello"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Telemetry:
     """How the arm is now.
 
@@ -140,8 +142,7 @@ class Telemetry:
     type: Literal["telemetry"] = "telemetry"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class ExecutionAccount:
     """How an execution stands, in full each time, so that a lost message costs nothing.
 
@@ -159,8 +160,7 @@ class ExecutionAccount:
     type: Literal["execution_account"] = "execution_account"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class StopReport:
     """The answer to a stop: what was done and what was verified by reading.
 
@@ -180,8 +180,7 @@ class StopReport:
     type: Literal["stop_report"] = "stop_report"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class AcknowledgeReport:
     """The answer to an acknowledgement: the faults that are left; none if it cleared."""
 
@@ -191,8 +190,7 @@ class AcknowledgeReport:
 
 
 # --- From the service -----------------------------------------------------------------------------
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Welcome:
     """The answer to a hello that is accepted."""
 
@@ -200,16 +198,14 @@ class Welcome:
     type: Literal["welcome"] = "welcome"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Heartbeat:
     """The service is there."""
 
     type: Literal["heartbeat"] = "heartbeat"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Execute:
     """An execution follows: this, then `target_count` messages of type target_motion."""
 
@@ -222,8 +218,7 @@ class Execute:
     type: Literal["execute"] = "execute"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class SegmentTimes:
     """A named part of a trajectory: transfer, cut_in, dwell, retreat."""
 
@@ -232,8 +227,7 @@ class SegmentTimes:
     end_s: float
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class TargetMotion:
     """The verified, timed motion for one target, joint-linear between rows."""
 
@@ -248,8 +242,7 @@ class TargetMotion:
     type: Literal["target_motion"] = "target_motion"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Pause:
     """Slow down to a stand on the path."""
 
@@ -257,8 +250,7 @@ class Pause:
     type: Literal["pause"] = "pause"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Resume:
     """Go on along the path."""
 
@@ -266,8 +258,7 @@ class Resume:
     type: Literal["resume"] = "resume"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Cancel:
     """Slow down to a stand on the path and end there."""
 
@@ -275,8 +266,7 @@ class Cancel:
     type: Literal["cancel"] = "cancel"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Stop:
     """Hold at once, in whatever state."""
 
@@ -284,8 +274,7 @@ class Stop:
     type: Literal["stop"] = "stop"
 
 
-@with_config(_MESSAGE)
-@dataclass(frozen=True)
+@_message
 class Acknowledge:
     """A person has seen the faults: check again and clear what is gone."""
 

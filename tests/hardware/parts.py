@@ -84,9 +84,9 @@ class InProcessBus:
     def _ask(self, servo_id: int, instruction: int, parameters: bytes) -> StatusReply:
         answer = self._send(instruction_packet(servo_id, instruction, parameters))
         if not answer:
-            raise ServoMissing(servo_id, f"servo {servo_id} does not answer")
+            raise ServoMissing(servo_id, "does not answer")
         if answer[-1] != checksum(answer[2:-1]):
-            raise CorruptPackets(servo_id, f"servo {servo_id} answers unreadably")
+            raise CorruptPackets(servo_id, "answers unreadably")
         return StatusReply(answer[5:-1], error_names(answer[4]))
 
     def _send(self, packet: bytes) -> bytes:

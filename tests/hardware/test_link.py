@@ -83,11 +83,11 @@ def heartbeats(connection: ServerConnection) -> None:
 
 
 def test_urls_of_links() -> None:
-    assert link_url("http://farm:8000", "a") == "ws://farm:8000/v1/robots/a/link"
-    assert link_url("https://farm/prunus/", "a/b ü") == (
-        "wss://farm/prunus/v1/robots/a%2Fb%20%C3%BC/link"
+    assert link_url("http://orchard:8000", "a") == "ws://orchard:8000/v1/robots/a/link"
+    assert link_url("https://orchard/prunus/", "a/b ü") == (
+        "wss://orchard/prunus/v1/robots/a%2Fb%20%C3%BC/link"
     )
-    for wrong in ("farm:8000", "ftp://farm", "", "http://"):
+    for wrong in ("orchard:8000", "ftp://orchard", "", "http://"):
         with pytest.raises(LinkRefused):
             link_url(wrong, "a")
 

@@ -80,7 +80,7 @@ def test_a_second_client_may_come_after_the_first(start: Start) -> None:
 def test_it_turns_faster_than_the_wall_clock_when_told_so(start: Start) -> None:
     process, device = start("--time-factor", "100000", "--noise-ticks", "0")
     with contextlib.closing(Port(device)) as port:
-        port.packets.write4ByteTxOnly(port.handler, 11, 30, 700 | 1 << 16)
+        assert port.packets.write4ByteTxRx(port.handler, 11, 30, 700 | 1 << 16) == (0, 0)
         for _ in range(TRIES):
             if port.read(11, 46, 1) == b"\x00":
                 break
