@@ -104,6 +104,10 @@ TRAJECTORY_STEP_S: Final = 0.02
 TRAJECTORY_HALVINGS: Final = 8
 """How often the step is halved to keep the cut-in straight between rows; 0.1 ms is the end."""
 
+STILL_RAD: Final = 1e-9
+"""Two postures that differ by less are one step apart at any speed [rad]; the time that the speed
+limits allow for less and less travel would end in an overflow."""
+
 DEVIATION_SAMPLES: Final = 3
 """Postures between two rows at which the distance from the straight line is measured. It is nearly
 a parabola between rows, so its middle is among them and its quarter points tell if it is not."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.robots.model import Array, Robot
-from solver.tolerances import FLAT_SLOPE_RAD_M
+from solver.tolerances import FLAT_SLOPE_RAD_M, STILL_RAD
 from solver.trajectory.rates import rate_ratios
 
 
@@ -69,11 +69,12 @@ def time_joint_line(robot: Robot, start: Array, end: Array, step_s: float) -> Ti
     change = np.abs(end - start)
     if not change.any():
         return TimedRows(np.zeros(1), np.array([start]))
-    moving = change > 0
+    if change.max() < STILL_RAD:
+        return TimedRows(np.array([0.0, step_s]), np.array([start, end]))
     law = TrapezoidalLaw(
         distance=1.0,
-        peak_velocity=float(np.min(robot.velocity[moving] / change[moving])),
-        acceleration=float(np.min(robot.acceleration[moving] / change[moving])),
+        peak_velocity=float(1 / np.max(change / robot.velocity)),
+        acceleration=float(1 / np.max(change / robot.acceleration)),
     )
 
     def line(shares: Array) -> Array:

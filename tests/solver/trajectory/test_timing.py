@@ -47,6 +47,15 @@ def test_joint_line_keeps_every_limit_and_uses_one_of_them(
         assert np.diff(motion.times_s).max() <= 0.02 * (1 + 1e-6)
 
 
+@pytest.mark.parametrize("travel", [2.3e-311, 1e-200, 1e-12, 1e-9, 1e-8])
+def test_travel_next_to_nothing_has_a_time_too(travel: float) -> None:
+    end = np.array([0.0, 0.0, 0.0, 0.0, 0.0, travel])
+    motion = time_joint_line(ROBOT, np.zeros(6), end, 0.02)
+    np.testing.assert_array_equal(motion.joints[-1], end)
+    speed, force = rate_ratios(motion.times_s, motion.joints, ROBOT.velocity, ROBOT.acceleration)
+    assert max(speed, force) <= 1 + 1e-6
+
+
 def test_no_motion_is_one_row() -> None:
     motion = time_joint_line(ROBOT, np.zeros(6), np.zeros(6), 0.02)
     assert motion.duration_s == 0.0
