@@ -119,6 +119,12 @@ class OrderRefused(HardwareError):
     code = "order_refused"
 
 
+class JournalFailed(HardwareError):
+    """The journal cannot be written, so an execution could be carried out twice."""
+
+    code = "journal_failed"
+
+
 class LinkLost(HardwareError):
     """The service was not heard for too long while the arm was moving."""
 

@@ -8,7 +8,7 @@ from typing import Final
 import orjson
 
 from hardware.clock import timestamp
-from hardware.exceptions import OrderRefused
+from hardware.exceptions import JournalFailed, OrderRefused
 
 STARTED: Final = "started"
 
@@ -44,6 +44,7 @@ class Journal:
 
         Raises:
             OrderRefused: it was begun before, here or by an earlier worker with this journal.
+            JournalFailed: it cannot be noted.
         """
         if execution_id in self._started:
             raise OrderRefused(f"execution {execution_id} was begun before")
@@ -51,7 +52,7 @@ class Journal:
         self._started.add(execution_id)
 
     def end(self, execution_id: str, status: str) -> None:
-        """Note how an execution ended."""
+        """Note how an execution ended; JournalFailed if it cannot be noted."""
         self._write(execution_id, status)
         self.unfinished.discard(execution_id)
 
@@ -65,10 +66,13 @@ class Journal:
 
     def _write(self, execution_id: str, event: str) -> None:
         entry = {"at": timestamp(), "execution_id": execution_id, "event": event}
-        with self._path.open("ab") as file:
-            file.write(orjson.dumps(entry, option=orjson.OPT_APPEND_NEWLINE))
-            file.flush()
-            os.fsync(file.fileno())
+        try:
+            with self._path.open("ab") as file:
+                file.write(orjson.dumps(entry, option=orjson.OPT_APPEND_NEWLINE))
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise JournalFailed(f"{self._path}: {error.strerror}") from error
 
 
 def _entries(path: Path) -> Iterator[tuple[str, str]]:

@@ -73,14 +73,15 @@ def build_order(
         raise OrderRefused(f"the plan is for the tool {execute.tool}, mounted is {tool.name}")
     if [motion.index for motion in motions] != list(range(execute.target_count)):
         raise OrderRefused("a target's motion is missing")
-    targets = tuple(map(_target, motions))
+    if len(execute.start_joints) != len(robot.joints):
+        raise OrderRefused(f"the start needs {len(robot.joints)} joints")
+    targets = tuple(_target(motion, len(robot.joints)) for motion in motions)
     start = np.array(execute.start_joints)
     last = start
     for target in targets:
         if tuple(segment.name for segment in target.segments) != SEGMENTS:
             raise OrderRefused(f"target {target.target_id}: the motion has other segments")
         for segment in target.segments:
-            _check_shape(robot, target, segment)
             check_rows(robot, arm, segment.times_s, segment.rows)
             if np.abs(segment.rows[0] - last).max() > JOINED_RAD:
                 raise OrderRefused(f"target {target.target_id}: {segment.name} begins elsewhere")
@@ -88,7 +89,12 @@ def build_order(
     return Order(execute.execution_id, start, targets)
 
 
-def _target(motion: TargetMotion) -> TargetOrder:
+def _target(motion: TargetMotion, joints: int) -> TargetOrder:
+    vectors = (motion.standby_joints, motion.thinning_joints, *motion.joints)
+    if {len(vector) for vector in vectors} != {joints}:
+        raise OrderRefused(f"target {motion.target_id}: rows need {joints} joints")
+    if len(motion.times_s) != len(motion.joints):
+        raise OrderRefused(f"target {motion.target_id}: rows and times differ in number")
     times, rows = np.array(motion.times_s), np.array(motion.joints)
     segments = []
     for part in motion.segments:
@@ -102,10 +108,3 @@ def _target(motion: TargetMotion) -> TargetOrder:
         np.array(motion.thinning_joints),
         tuple(segments),
     )
-
-
-def _check_shape(robot: Robot, target: TargetOrder, segment: Segment) -> None:
-    joints = len(robot.joints)
-    vectors = (target.standby, target.thinning)
-    if segment.rows.shape[1:] != (joints,) or any(v.shape != (joints,) for v in vectors):
-        raise OrderRefused(f"target {target.target_id}: rows need {joints} joints")

@@ -11,7 +11,6 @@ acknowledges it and the servos check out.
 import logging
 import threading
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Final
 
 from hardware.arm import HeldPosture, ServoArm
@@ -23,6 +22,7 @@ from hardware.exceptions import (
     HardwareError,
     InternalError,
     Interrupted,
+    JournalFailed,
     LinkLost,
     OrderRefused,
     PortUnavailable,
@@ -47,16 +47,14 @@ from hardware.messages import (
     Stop,
     StopReport,
     TargetMotion,
-    Telemetry,
 )
 from hardware.order import build_order
+from hardware.telemetry import telemetry
 from hardware.tolerances import IDLE_TICK_S, TELEMETRY_S, TICK_S
 from solver.robots.model import Tool
 
 logger = logging.getLogger(__name__)
 
-IDLE: Final = "idle"
-FAULT: Final = "fault"
 ALL_DONE: Final = object()
 
 
@@ -202,9 +200,12 @@ class Worker:
 
     def _acknowledge(self, message: Acknowledge) -> None:
         if self._execution is None:
-            for execution_id in tuple(self._journal.unfinished):
-                self._journal.end(execution_id, Interrupted.code)
             self._faults = ()
+            try:
+                for execution_id in tuple(self._journal.unfinished):
+                    self._journal.end(execution_id, Interrupted.code)
+            except JournalFailed as error:
+                self._latch(error.code, error.detail)
             self._look_around()
         self._say_telemetry(now_due=True)
         self._link.say(AcknowledgeReport(message.request_id, self._faults))
@@ -257,9 +258,12 @@ class Worker:
             self._latch(error.code, detail)
 
     def _finish(self, execution: Execution) -> None:
-        self._journal.end(execution.account.execution_id, execution.account.status)
         self._execution = None
         self._steps = iter(())
+        try:
+            self._journal.end(execution.account.execution_id, execution.account.status)
+        except JournalFailed as error:
+            self._latch(error.code, error.detail)
 
     def _stop(self, stop: Stop) -> StopReport:
         held, trouble = self._make_safe()
@@ -311,17 +315,6 @@ class Worker:
             return
         self._telemetry_due = now + TELEMETRY_S * self._clock.factor
         account = None if self._execution is None else self._execution.account
-        status = FAULT if self._faults else IDLE if account is None else account.status
-        telemetry = Telemetry(
-            status=status,
-            torque=self._arm.torque,
-            end_effector_state=self._end_effector.state,
-            faults=self._faults,
-            servos=self._arm.chain.health(),
-            overruns=self._overruns,
-            execution_id=None if account is None else account.execution_id,
+        self._link.say(
+            telemetry(self._arm, self._end_effector, self._faults, account, self._overruns)
         )
-        if (posture := self._arm.chain.last_posture()) is not None:
-            joints, read_at = posture
-            telemetry = replace(telemetry, joints=tuple(joints.tolist()), joints_read_at=read_at)
-        self._link.say(telemetry)

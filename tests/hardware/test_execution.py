@@ -365,6 +365,25 @@ def test_orders_with_an_unsafe_row_are_refused_before_anything_moves() -> None:
     assert bench.bus.sent == []
 
 
+def test_orders_of_another_shape_are_refused() -> None:
+    bench = make_bench()
+    execute, motions = messages_of(plan_of_data_set_3())
+    first, *others = motions
+    spoiled = (
+        replace(first, standby_joints=first.standby_joints[:5]),
+        replace(first, joints=(first.joints[0][:5], *first.joints[1:])),
+        replace(first, times_s=first.times_s[:-1]),
+        replace(first, segments=first.segments[:3]),
+        replace(first, segments=()),
+        replace(first, joints=(), times_s=()),
+    )
+    for motion in spoiled:
+        with pytest.raises(OrderRefused):
+            build_order(bench.robot, tool_of(bench.robot), bench.map, execute, [motion, *others])
+    with pytest.raises(OrderRefused):
+        order_for(bench, start_joints=(0.0,) * 5)
+
+
 def test_orders_whose_times_do_not_rise_are_refused() -> None:
     bench = make_bench()
     execute, motions = messages_of(plan_of_data_set_3())

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from hardware.exceptions import OrderRefused
+from hardware.exceptions import JournalFailed, OrderRefused
 from hardware.journal import Journal
 
 
@@ -39,6 +39,14 @@ def test_a_half_written_line_costs_only_itself(tmp_path: Path) -> None:
     after = Journal(path)
     after.start("c")
     assert Journal(path).unfinished == {"a", "c"}
+
+
+def test_a_journal_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    journal = Journal(tmp_path / "journal")
+    (tmp_path / "journal").unlink()
+    (tmp_path / "journal").mkdir()
+    with pytest.raises(JournalFailed, match="journal"):
+        journal.start("a")
 
 
 def test_a_folder_that_cannot_be_used_is_an_os_error(tmp_path: Path) -> None:

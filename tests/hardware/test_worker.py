@@ -412,6 +412,20 @@ def test_a_worker_killed_in_the_middle_wants_a_person_to_look(tmp_path: Path) ->
     assert make_scene(tmp_path).journal.unfinished == set()
 
 
+def test_without_a_journal_nothing_is_begun_and_what_ends_is_a_fault(
+    scene: Scene, tmp_path: Path
+) -> None:
+    file = tmp_path / "worker.journal"
+    file.unlink()
+    file.mkdir()
+    scene.order()
+    scene.run(5.0)
+    error = scene.accounts()[-1].error
+    assert error is not None
+    assert error.code == "journal_failed"
+    assert {packet[4] for packet in scene.bench.bus.sent} == {2}
+
+
 def test_a_refused_worker_ends(scene: Scene) -> None:
     scene.link.refusal = LinkRefused("another model")
     with pytest.raises(LinkRefused):
