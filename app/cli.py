@@ -194,6 +194,36 @@ def worker(
 
 
 @cli.command()
+def calibrate(
+    robot: Annotated[str, typer.Option(help="Whose servos, by the robot's name.")],
+    port: Annotated[str, typer.Option(help="Serial device of the servos.")],
+    joints_deg: Annotated[
+        str, typer.Option(help="Where the arm truly stands, measured by you: Q1,...,Q6.")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Where the calibration goes.")],
+    baud_rate: Annotated[int, typer.Option(help="Of the servo bus.")] = 1_000_000,
+) -> None:
+    """Read the servos at a posture that is known, and write the offsets to a calibration file.
+
+    Nothing is written to a servo and nothing moves. Ends with 1 when it cannot be measured.
+    """
+    import math
+
+    from hardware.calibrating import calibrate_arm
+    from hardware.exceptions import HardwareError
+    from solver.exceptions import UnknownRobot
+
+    try:
+        offsets = calibrate_arm(robot, port, baud_rate, joints_deg, output)
+    except (HardwareError, UnknownRobot) as error:
+        _fail(str(error), code=1)
+    except OSError as error:
+        _fail(f"{error.filename}: {error.strerror}", code=1)
+    for joint, offset in offsets.items():
+        typer.echo(f"{joint} {math.degrees(offset):+.3f} deg")
+
+
+@cli.command()
 def servo_bus(
     robot: Annotated[str, typer.Option(help="Whose servos, by the robot's name.")] = "tabletop",
     joints_deg: Annotated[
@@ -221,7 +251,7 @@ def servo_bus(
     """
     from hardware.exceptions import HardwareError
     from hardware.simulator.faults import FaultRefused
-    from hardware.simulator.program import BadOption, run_servo_bus
+    from hardware.simulator.program import run_servo_bus
     from solver.exceptions import UnknownRobot
 
     try:
@@ -235,7 +265,7 @@ def servo_bus(
             noise_ticks=noise_ticks,
             time_factor=time_factor,
         )
-    except (BadOption, FaultRefused, HardwareError, UnknownRobot) as error:
+    except (FaultRefused, HardwareError, UnknownRobot) as error:
         _fail(str(error))
 
 

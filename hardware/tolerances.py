@@ -65,6 +65,10 @@ SETTLE_S: Final = 2.0
 MEASURED_READS: Final = 5
 """Reads whose mean is a measured posture: one read's noise moves the tool by up to 3.7 mm."""
 
+LARGEST_CALIBRATION_RAD: Final = 0.17
+"""A joint that reads further off than this [rad], 10 degrees, is not miscalibrated: the posture was
+given wrongly, or a horn is mounted a tooth away. The thesis's largest offset is one degree."""
+
 # --- Watching -------------------------------------------------------------------------------------
 FOLLOWING_RAD: Final = 0.2
 """Distance of a joint from its goal that counts as lagging [rad]: five ticks' travel at 2 rad/s."""

@@ -1,7 +1,6 @@
 """`prunus worker`: puts a worker together from its options, and runs it until a signal ends it."""
 
 import logging
-import math
 import signal
 import sys
 from collections.abc import Callable
@@ -13,12 +12,13 @@ from hardware.arm import ServoArm
 from hardware.clock import RobotClock
 from hardware.dynamixel_bus import DynamixelBus
 from hardware.end_effector import END_EFFECTORS
-from hardware.exceptions import HardwareError, InvalidArm
+from hardware.exceptions import HardwareError
 from hardware.instances import RobotInstance, load_instance
 from hardware.joints import load_arm
 from hardware.journal import Journal
 from hardware.link import RobotLink, link_url
 from hardware.messages import Hello
+from hardware.options import BadOption, check_time_factor
 from hardware.setup_check import is_simulated
 from hardware.worker import Worker
 from solver.robots.model import Tool
@@ -108,16 +108,15 @@ def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
 def _check_options(options: WorkerOptions) -> None:
     if options.end_effector not in END_EFFECTORS:
         known = ", ".join(END_EFFECTORS)
-        raise InvalidArm(f"unknown end-effector {options.end_effector}; known: {known}")
-    if not 0 < options.time_factor < math.inf:
-        raise InvalidArm("the time factor must be above 0")
+        raise BadOption(f"--end-effector {options.end_effector} is unknown; known: {known}")
+    check_time_factor(options.time_factor)
 
 
 def _tool(instance: RobotInstance, name: str | None) -> Tool:
     tool = instance.robot.tool(name or instance.robot.default_tool)
     if tool is None:
         known = ", ".join(tool.name for tool in instance.robot.tools)
-        raise InvalidArm(f"{instance.name} has no tool {name}; known: {known}")
+        raise BadOption(f"--tool {name} is unknown; known: {known}")
     return tool
 
 

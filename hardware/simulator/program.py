@@ -1,6 +1,5 @@
 """The program `prunus servo-bus`: options to a bus, standard streams to commands and messages."""
 
-import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,13 +7,10 @@ from pathlib import Path
 from hardware.clock import RobotClock
 from hardware.instances import load_instance
 from hardware.joints import load_arm
+from hardware.options import BadOption, check_time_factor, joints_from_degrees
 from hardware.simulator.bus import simulated_arm
 from hardware.simulator.faults import FAULTS, apply_fault
 from hardware.simulator.pseudo_terminal import serve_bus
-
-
-class BadOption(ValueError):
-    """An option's value that makes no sense; the message names the option."""
 
 
 def run_servo_bus(
@@ -40,12 +36,11 @@ def run_servo_bus(
     """
     if noise_ticks < 0:
         raise BadOption("--noise-ticks is 0 or more")
-    if not 0 < time_factor < math.inf:
-        raise BadOption("--time-factor is a number above 0")
+    check_time_factor(time_factor)
     instance = load_instance(robot)
     arm = load_arm(instance.robot, instance.model, calibration)
     home = instance.robot.home_rad
-    start = home if joints_deg is None else _joints(joints_deg, count=len(home))
+    start = home if joints_deg is None else joints_from_degrees(joints_deg, count=len(home))
     bus = simulated_arm(arm, start, RobotClock(time_factor).now, seed, noise_ticks)
     for line in faults:
         apply_fault(bus, line)
@@ -62,13 +57,3 @@ def run_servo_bus(
     # A closed standard input is None here.
     commands = None if sys.stdin is None else sys.stdin.fileno()
     serve_bus(bus, announce=announce, complain=tell, commands=commands, link=link)
-
-
-def _joints(text: str, count: int) -> tuple[float, ...]:
-    try:
-        degrees = [float(part) for part in text.split(",")]
-    except ValueError:
-        degrees = []
-    if len(degrees) != count or not all(map(math.isfinite, degrees)):
-        raise BadOption(f"--joints-deg is {count} numbers with commas between them")
-    return tuple(map(math.radians, degrees))

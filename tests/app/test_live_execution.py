@@ -342,11 +342,11 @@ def test_a_servo_that_is_missing_from_the_start_is_told_by_the_service(
     [
         (("--robot", ROBOT, "--port", "/dev/no-such-device"), "No such file"),
         (("--robot", "elsewhere"), "unknown robot"),
-        (("--robot", ROBOT, "--tool", "saw"), "no tool saw"),
+        (("--robot", ROBOT, "--tool", "saw"), "--tool saw"),
         (("--robot", ROBOT, "--end-effector", "flame"), "flame"),
         (("--robot", ROBOT, "--url", "ftp://127.0.0.1"), "http"),
         (("--robot", ROBOT, "--calibration", "/nowhere.toml"), "/nowhere.toml"),
-        (("--robot", ROBOT, "--time-factor", "0"), "time factor"),
+        (("--robot", ROBOT, "--time-factor", "0"), "--time-factor"),
     ],
 )
 def test_a_worker_that_cannot_work_says_why_in_one_line(

@@ -1,0 +1,28 @@
+"""Options of the commands, checked with a message that names them."""
+
+import math
+
+from hardware.exceptions import HardwareError
+
+
+class BadOption(HardwareError):
+    """An option's value that makes no sense; the message names the option."""
+
+    code = "bad_option"
+
+
+def check_time_factor(factor: float) -> None:
+    """Refuse a time factor that is not a number above 0."""
+    if not 0 < factor < math.inf:
+        raise BadOption("--time-factor is a number above 0")
+
+
+def joints_from_degrees(text: str, count: int) -> tuple[float, ...]:
+    """A joint vector [rad] from `count` numbers of degrees with commas between them."""
+    try:
+        degrees = [float(part) for part in text.split(",")]
+    except ValueError:
+        degrees = []
+    if len(degrees) != count or not all(map(math.isfinite, degrees)):
+        raise BadOption(f"--joints-deg is {count} numbers with commas between them")
+    return tuple(map(math.radians, degrees))
