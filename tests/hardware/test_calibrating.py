@@ -39,7 +39,8 @@ def test_a_calibrated_arm_reads_the_posture_that_was_given(bench: Bench) -> None
     true = np.array(bench.robot.home_rad) + 0.07
     offsets = measure_offsets(bench.arm.chain, true.tolist())
     arm = calibrated(bench.map, calibration_file(bench.map, offsets, "test"))
-    assert (np.abs(arm.joints(bench.arm.chain.sweep()) - true) < resolution(arm)).all()
+    # Noise of the measurement and noise of this one read.
+    assert (np.abs(arm.joints(bench.arm.chain.sweep()) - true) < 2 * resolution(arm)).all()
 
 
 def test_a_posture_far_from_what_is_read_is_refused(bench: Bench) -> None:
