@@ -56,6 +56,11 @@ from solver.robots.model import Tool
 logger = logging.getLogger(__name__)
 
 ALL_DONE: Final = object()
+STOPPED_AS_IT_WAS: Final = "it is not known where torque is on; nothing moves"
+STOP_DETAILS: Final = {
+    "on": "the arm holds where it stands",
+    "off": "torque is off: nothing was held, and nothing moves",
+}
 
 
 class Worker:
@@ -212,9 +217,10 @@ class Worker:
 
     def _look_around(self) -> None:
         """Check servos and end-effector; what is wrong becomes a fault."""
+        if self._journal.unfinished:
+            detail = "a worker ended in the middle of an execution; look at the arm"
+            self._latch(Interrupted.code, detail)
         try:
-            if self._journal.unfinished:
-                raise Interrupted("a worker ended in the middle of an execution; look at the arm")
             self._end_effector.switch(on=False)
             try:
                 self._arm.check()
@@ -272,11 +278,7 @@ class Worker:
             self._execution.end(Stopped("stopped on request"))
             self._finish(self._execution)
         self._latch(Stopped.code, "; ".join(("stopped on request", *trouble)))
-        detail = "; ".join(trouble) or (
-            "the arm holds where it stands"
-            if self._arm.torque == "on"
-            else "torque is off: nothing was held, and nothing moves"
-        )
+        detail = "; ".join(trouble) or STOP_DETAILS.get(self._arm.torque, STOPPED_AS_IT_WAS)
         if held is None or held.joints is None:
             return StopReport(stop.request_id, stopped=False, verified=False, detail=detail)
         return StopReport(
@@ -305,6 +307,8 @@ class Worker:
         return held, tuple(trouble)
 
     def _latch(self, code: str, detail: str) -> None:
+        if any(fault.code == code for fault in self._faults):
+            return  # the first one is the cause
         logger.error("%s: %s", code, detail)
         self._faults = (*self._faults, Failure(code, detail, timestamp()))
 

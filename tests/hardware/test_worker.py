@@ -246,6 +246,18 @@ def test_a_stop_with_torque_off_sends_nothing(scene: Scene) -> None:
     assert {packet[4] for packet in scene.bench.bus.sent} == {2}
 
 
+def test_a_second_stop_is_verified_too_and_latched_once(scene: Scene) -> None:
+    scene.order()
+    scene.link.at(4.0, Stop("s1"))
+    scene.link.at(5.0, Stop("s2"))
+    scene.run(7.0)
+    assert [(report.request_id, report.verified) for report in scene.stop_reports()] == [
+        ("s1", True),
+        ("s2", True),
+    ]
+    assert [fault.code for fault in scene.telemetry()[-1].faults] == ["stopped"]
+
+
 def test_a_stop_without_a_servo_says_what_was_not_verified(scene: Scene) -> None:
     scene.order()
     scene.link.at(4.0, "missing 41")
