@@ -105,8 +105,8 @@ RENEW_S: Final = 0.1
 """How often it is told [s, wall clock]: five times in that."""
 
 GUARD_ANSWER_S: Final = 1.0
-"""A guard that does not answer for so long is lost [s, wall clock]; a stop waits for it, and for the
-hold, within the 3 s that the service waits for its report."""
+"""A guard that does not answer for so long is lost [s, wall clock]; a stop waits for it, and
+for the hold, within the 3 s that the service waits for its report."""
 
 # --- Link -----------------------------------------------------------------------------------------
 TELEMETRY_S: Final = 0.1
