@@ -8,7 +8,7 @@ import numpy as np
 
 from hardware.bus import ServoBus
 from hardware.clock import RobotClock
-from hardware.exceptions import FollowingError, PairDisagreement, WrongSetting
+from hardware.exceptions import FollowingError, PairDisagreement, TorqueLost, WrongSetting
 from hardware.joints import ArmMap, JointDrive
 from hardware.safety import check_goal, check_posture
 from hardware.servo_chain import ServoChain
@@ -49,7 +49,9 @@ class ServoArm:
     """An arm's servos behind a bus. One thread uses it.
 
     Attributes:
-        torque: "on", "off", "partly", or "unknown" before the first check.
+        clock: robot time.
+        torque: "on", "off" or "partly"; "unknown" before the first check, or while a servo does not
+            answer.
     """
 
     def __init__(self, robot: Robot, arm: ArmMap, bus: ServoBus, clock: RobotClock) -> None:
@@ -57,22 +59,29 @@ class ServoArm:
         self.map = arm
         self.chain = ServoChain(arm, bus)
         self.torque = "unknown"
-        self._clock = clock
+        self.clock = clock
         self._commanded: Array | None = None
         self._next_poll = 0
         self._lagging: Counter[str] = Counter()
         self._disagreeing: Counter[str] = Counter()
 
+    @property
+    def commanded(self) -> Array:
+        """The last posture that was commanded, shape (n,) [rad]; RuntimeError before any was."""
+        if self._commanded is None:
+            raise RuntimeError("torque has to be enabled before a goal is commanded")
+        return self._commanded
+
     def check(self) -> None:
-        """Check every servo's kind, settings and health, and learn where torque is on.
+        """Learn where torque is on, then check every servo's kind, settings and health.
 
         Raises:
             HardwareError: see `hardware.setup_check.check_setup`.
         """
-        self.torque = "unknown"
+        self._learn_torque(self.chain.survey())
+        if self.torque != "on":
+            self._forget_command()
         check_setup(self.robot, self.chain)
-        on = [self.chain.value(motor, "torque_enable") for motor in self.map.motors]
-        self.torque = "on" if all(on) else "partly" if any(on) else "off"
 
     def read_joints(self) -> Array:
         """The posture, from one read of every servo, shape (n,) [rad].
@@ -122,10 +131,8 @@ class ServoArm:
         Raises:
             UnsafeGoal: see `hardware.safety.check_goal`.
         """
-        if self._commanded is None:
-            raise RuntimeError("torque has to be enabled before a goal is commanded")
-        check_goal(self.robot, self.map, self._commanded, goal, step_s)
-        needed = np.abs(goal - self._commanded) / step_s * CATCH_UP
+        check_goal(self.robot, self.map, self.commanded, goal, step_s)
+        needed = np.abs(goal - self.commanded) / step_s * CATCH_UP
         counts = [speed_ticks(max(speed, LOWEST_SPEED_RAD_S)) for speed in needed.tolist()]
         speeds = {
             motor.id: speed
@@ -139,6 +146,7 @@ class ServoArm:
         """Read the next joint in rotation, and judge what it says about the last goal.
 
         Raises:
+            TorqueLost: a servo is without power while the arm is held or moved.
             FollowingError: it lags behind its goal, read after read.
             PairDisagreement: its two servos stand apart, read after read.
             HardwareError: a servo does not answer or reports an error.
@@ -149,6 +157,7 @@ class ServoArm:
         says = self.chain.read_drive(drive)
         self._watch_pair(drive, says)
         if self._commanded is not None:
+            self._watch_power(drive)
             error = drive.angle(sum(says) / len(says)) - float(self._commanded[i])
             self._watch_lag(drive, error)
 
@@ -165,32 +174,56 @@ class ServoArm:
     def hold(self) -> HeldPosture:
         """Stop where the arm stands, and see whether it does.
 
-        A servo that cannot be read keeps its last goal, which is a short step away. Where torque is
-        off, or was never looked at, nothing is sent: a goal would put the arm under power.
+        Only servos under power get a goal, as a goal would put the others under power. One that
+        cannot be read keeps its last goal, which is a short step away.
 
         Raises:
             BusLost: nothing could be sent.
         """
-        positions = self.chain.values_of_what_answers("present_position")
+        positions = self.chain.survey()
+        unpowered = self._learn_torque(positions)
+        goals = self._goals_at(positions)
+        if held := {servo_id: goals[servo_id] for servo_id in goals if servo_id not in unpowered}:
+            self.chain.send(held, dict.fromkeys(held, speed_ticks(HOLD_SPEED_RAD_S)))
         missing = self._missing(positions)
-        if self.torque in ("on", "partly") and (goals := self._goals_at(positions)):
-            self.chain.send(goals, dict.fromkeys(goals, speed_ticks(HOLD_SPEED_RAD_S)))
-        deadline = self._clock.now() + STILL_S
+        deadline = self.clock.now() + STILL_S
         still = False
-        while not missing and not still and self._clock.now() < deadline:
-            self._clock.sleep(STILL_INTERVAL_S)
+        while not missing and not still and self.clock.now() < deadline:
+            self.clock.sleep(STILL_INTERVAL_S)
             last = positions
-            positions = self.chain.values_of_what_answers("present_position")
+            positions = self.chain.survey()
             missing = self._missing(positions)
             still = not missing and all(
                 abs(ticks - last[servo_id]) <= STILL_TICKS for servo_id, ticks in positions.items()
             )
         if missing:
-            return HeldPosture(False, None, f"no answer from servos {missing}")
+            return HeldPosture(False, None, f"servos {missing} cannot be read")
         posture = self.map.joints(positions)
-        if self._commanded is not None:
+        if self.torque == "on" and self._commanded is not None:
             self._commanded = posture
-        return HeldPosture(still, posture, "" if still else "the arm still moves")
+        else:
+            self._forget_command()
+        detail = "" if still else "the arm still moves"
+        if self.torque == "partly":
+            without = ", ".join(map(str, unpowered))
+            detail = f"servos {without} have no torque and are not held"
+        return HeldPosture(still, posture, detail)
+
+    def _learn_torque(self, answering: Mapping[int, int]) -> tuple[int, ...]:
+        """Set `torque` from the last reads; the ids that have none."""
+        without = tuple(i for i in answering if not self.chain.is_powered(i))
+        if len(answering) < len(self.map.motors):
+            self.torque = "unknown"
+        elif without:
+            self.torque = "off" if len(without) == len(answering) else "partly"
+        else:
+            self.torque = "on"
+        return without
+
+    def _forget_command(self) -> None:
+        self._commanded = None
+        self._lagging.clear()
+        self._disagreeing.clear()
 
     def _missing(self, positions: Mapping[int, int]) -> str:
         return ", ".join(str(motor.id) for motor in self.map.motors if motor.id not in positions)
@@ -203,6 +236,13 @@ class ServoArm:
                 says = drive.first_motor_ticks(positions)
                 goals |= drive.goals(round(sum(says) / len(says)))
         return goals
+
+    def _watch_power(self, drive: JointDrive) -> None:
+        for motor in drive.motors:
+            if not self.chain.is_powered(motor.id):
+                self._forget_command()
+                self.torque = "partly"
+                raise TorqueLost(motor.id, "has lost its torque: its power failed, or it shut down")
 
     def _watch_lag(self, drive: JointDrive, error: float) -> None:
         self._lagging[drive.joint] += 1

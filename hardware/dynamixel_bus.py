@@ -108,11 +108,7 @@ class DynamixelBus:
         try:
             opened = self._port.openPort()
         except (serial.SerialException, OSError, termios.error) as error:
-            number = getattr(error, "errno", None)
-            reason = os.strerror(number) if number else str(error)
-            if number == errno.EAGAIN:
-                reason = "another program has it"
-            raise PortUnavailable(f"cannot open {self.device}: {reason}") from error
+            raise PortUnavailable(f"cannot open {self.device}: {_reason(error)}") from error
         if not opened:
             raise PortUnavailable(f"{self.device}: the SDK knows no rate of {self._port.baudrate}")
 
@@ -150,6 +146,15 @@ class DynamixelBus:
             self._port.is_using = False
 
 
+def _reason(error: Exception) -> str:
+    # pyserial keeps the number of what failed, or hides it behind a sentence of its own.
+    cause = error.__context__ if isinstance(error.__context__, termios.error) else error
+    number = cause.args[0] if cause.args and isinstance(cause.args[0], int) else 0
+    if number == errno.EAGAIN:
+        return "another program has it"
+    return os.strerror(number) if number else str(error)
+
+
 class _Port(PortHandler):  # type: ignore[misc]
     """The SDK's port, with its names: exclusive, waiting for bytes instead of spinning."""
 
@@ -164,6 +169,11 @@ class _Port(PortHandler):  # type: ignore[misc]
         self.is_open = True
         self.tx_time_per_byte = 10 * 1000 / self.baudrate
         return True
+
+    def readPort(self, length: int) -> bytes:
+        # The SDK looks at the time only when it is short of bytes, which a babbling line never is.
+        late = self.getTimeSinceStart() > self.packet_timeout
+        return b"" if late else bytes(self.ser.read(length))
 
     def getCurrentTime(self) -> float:
         return time.monotonic() * 1000

@@ -15,12 +15,13 @@ from types import MappingProxyType
 from typing import Final, Protocol
 
 from hardware.exceptions import EndEffectorFailed
-from hardware.tolerances import GUARD_ANSWER_S, RENEW_S
+from hardware.tolerances import GUARD_ANSWER_S, GUARD_START_S, RENEW_S
 
 ON: Final = "on"
 OFF: Final = "off"
 NONE: Final = "none"
 UNKNOWN: Final = "unknown"
+GUARD_GONE: Final = "the end-effector's guard is gone; its state is unknown"
 
 
 class EndEffector(Protocol):
@@ -35,6 +36,12 @@ class EndEffector(Protocol):
 
     def stay_on(self) -> None:
         """To be called every tick while it is on; EndEffectorFailed if it is not on any more."""
+
+    def check(self) -> None:
+        """To be called every tick; EndEffectorFailed if nobody can switch it any more."""
+
+    def recover(self) -> None:
+        """Make it work again, and verify that it is off; EndEffectorFailed if it does not."""
 
     def close(self) -> None:
         """Off, and no more calls."""
@@ -51,6 +58,12 @@ class NoEndEffector:
     def stay_on(self) -> None:
         """Nothing to renew."""
 
+    def check(self) -> None:
+        """Nothing to check."""
+
+    def recover(self) -> None:
+        """Nothing to recover."""
+
     def close(self) -> None:
         """Nothing to close."""
 
@@ -63,20 +76,19 @@ class GuardedEndEffector:
         record: file to which the guard writes every change, or None.
 
     Raises:
-        EndEffectorFailed: the guard does not start with the output off.
+        EndEffectorFailed: the record cannot be written, or the guard does not start with the
+            output off.
     """
 
     def __init__(self, output: str, record: Path | None) -> None:
-        command = [sys.executable, "-m", "hardware.end_effector_guard", output]
+        self._command = [sys.executable, "-m", "hardware.end_effector_guard", output]
         if record is not None:
-            command.append(str(record))
-        # Unbuffered: a word is with the guard, or it is an error, when the call returns.
-        self._guard = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0
-        )
-        self._state = UNKNOWN
-        self._renewed = 0.0
-        self._expect(OFF)
+            try:
+                record.touch()
+            except OSError as error:
+                raise EndEffectorFailed(f"{record}: {error.strerror}") from error
+            self._command.append(str(record))
+        self._start()
 
     @property
     def state(self) -> str:
@@ -85,48 +97,77 @@ class GuardedEndEffector:
 
     def switch(self, *, on: bool) -> None:
         """Switch it, and verify."""
-        wanted = ON if on else OFF
-        self._tell(wanted)
-        self._expect(wanted)
-        self._renewed = time.monotonic()
+        self._ask(ON if on else OFF, wanted=ON if on else OFF)
 
     def stay_on(self) -> None:
         """Tell the guard, often enough, that it shall stay on."""
-        if time.monotonic() - self._renewed >= RENEW_S:
-            self._tell("stay")
-            self._expect(ON)
-            self._renewed = time.monotonic()
+        if time.monotonic() - self._told >= RENEW_S:
+            self._ask("stay", wanted=ON)
+
+    def check(self) -> None:
+        """Whether the guard is there."""
+        if self._guard.poll() is not None:
+            self._state = UNKNOWN
+            raise EndEffectorFailed(GUARD_GONE)
+
+    def recover(self) -> None:
+        """Another guard, which begins by switching off."""
+        self.close()
+        self._start()
 
     def close(self) -> None:
         """Off: the guard ends when nobody talks to it any more."""
         for pipe in (self._guard.stdin, self._guard.stdout):
             if pipe is not None:
                 pipe.close()
-        self._guard.wait(GUARD_ANSWER_S)
+        try:
+            self._guard.wait(GUARD_ANSWER_S)
+        except subprocess.TimeoutExpired:
+            self._guard.kill()
+            self._guard.wait()
         self._state = OFF if self._guard.returncode == 0 else UNKNOWN
 
-    def _tell(self, word: str) -> None:
+    def _start(self) -> None:
+        # Unbuffered: a word is with the guard, or it is an error, when the call returns.
+        self._guard = subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0
+        )
         self._state = UNKNOWN
+        self._told = 0.0
+        self._number = 0
+        self._await(wanted=OFF, timeout_s=GUARD_START_S)
+
+    def _ask(self, word: str, *, wanted: str) -> None:
+        self._state = UNKNOWN
+        self._number += 1
         try:
             if self._guard.stdin is not None:
-                self._guard.stdin.write(f"{word}\n".encode())
+                self._guard.stdin.write(f"{self._number} {word}\n".encode())
         except OSError as error:
-            detail = "the end-effector's guard is gone; its state is unknown"
-            raise EndEffectorFailed(detail) from error
+            raise EndEffectorFailed(GUARD_GONE) from error
+        self._await(wanted=wanted, timeout_s=GUARD_ANSWER_S)
+        self._told = time.monotonic()
 
-    def _expect(self, wanted: str) -> None:
+    def _await(self, *, wanted: str, timeout_s: float) -> None:
+        """Read up to the answer to the last word; earlier ones came too late to be of use."""
+        deadline = time.monotonic() + timeout_s
+        number, answer = "", ""
         with DefaultSelector() as selector:
             stdout = self._guard.stdout
             if stdout is None:
                 return
             selector.register(stdout, EVENT_READ)
-            answered = bool(selector.select(GUARD_ANSWER_S))
-            answer = stdout.readline().decode().strip() if answered else ""
-        if answer in (ON, OFF):
-            self._state = answer
+            while number != str(self._number):
+                if not selector.select(max(0.0, deadline - time.monotonic())):
+                    raise EndEffectorFailed(
+                        f"the end-effector was to be {wanted}; its guard does not answer"
+                    )
+                number, _, answer = stdout.readline().decode().strip().partition(" ")
+                if not number:
+                    raise EndEffectorFailed(GUARD_GONE)
+        self._state = answer
         if answer != wanted:
-            said = f"says {answer!r}" if answer else "does not answer"
-            raise EndEffectorFailed(f"the end-effector was to be {wanted}; its guard {said}")
+            raise EndEffectorFailed(f"the end-effector was to be {wanted}; its guard says {answer}")
 
 
 Factory = Callable[[Path | None], EndEffector]

@@ -1,6 +1,7 @@
 """The process that owns an end-effector's output: `python -m hardware.end_effector_guard OUTPUT`.
 
-It takes one word a line, `on`, `off` or `stay`, and answers each with the state that it reads back.
+It takes a number and a word a line, `on`, `off` or `stay`, and answers with the number and the
+state that it reads back; the first answer, number 0, comes at the start.
 The output goes off when the line is closed, which a dead worker does, and when an output that is on
 was not told to stay so for GUARD_S, which a hanging worker does not.
 """
@@ -56,27 +57,30 @@ OUTPUTS: Final[Mapping[str, Callable[[Path | None], Output]]] = MappingProxyType
 def guard(output: Output) -> None:
     """Obey the words on standard input until it is closed; the output is off before and after."""
     output.set(on=False, why="start")
-    _answer(output)
+    _answer("0", output)
     deadline = math.inf
-    with DefaultSelector() as selector, open(0, "rb", buffering=0, closefd=False) as words:
-        selector.register(words, EVENT_READ)
+    with DefaultSelector() as selector, open(0, "rb", buffering=0, closefd=False) as lines:
+        selector.register(lines, EVENT_READ)
         while True:
             left = max(0.0, deadline - time.monotonic())
-            if not selector.select(None if math.isinf(left) else left):
+            has_word = selector.select(None if math.isinf(left) else left)
+            if time.monotonic() >= deadline:
+                # Even when a word waits: this process itself may have stood still.
                 output.set(on=False, why="not told to stay on")
                 deadline = math.inf
+            if not has_word:
                 continue
-            word = words.readline().strip()
-            if not word:
+            number, _, word = lines.readline().decode().strip().partition(" ")
+            if not number:
                 return
-            if word != b"stay":
-                output.set(on=word == b"on", why="commanded")
+            if word != "stay":
+                output.set(on=word == "on", why="commanded")
             deadline = time.monotonic() + GUARD_S if output.is_on() else math.inf
-            _answer(output)
+            _answer(number, output)
 
 
-def _answer(output: Output) -> None:
-    print(_word(output.is_on()), flush=True)  # noqa: T201 - the answer
+def _answer(number: str, output: Output) -> None:
+    print(number, _word(output.is_on()), flush=True)  # noqa: T201 - the answer
 
 
 def _word(on: bool) -> str:

@@ -67,6 +67,12 @@ class WrongSetting(ServoError):
     code = "wrong_setting"
 
 
+class TorqueLost(ServoError):
+    """A servo is not under power any more, though nobody here switched it off."""
+
+    code = "torque_lost"
+
+
 class JointError(HardwareError):
     """Something about one joint."""
 

@@ -24,6 +24,7 @@ from hardware.messages import (
     NOT_STARTED,
     PAUSED,
     SKIPPED,
+    UNKNOWN,
     ExecutionAccount,
     Failure,
     TargetAccount,
@@ -71,6 +72,7 @@ class Execution:
         self._pace = 1.0
         self._wanted_pace = 1.0
         self._canceling = False
+        self._worked_on = False
         targets = tuple(TargetAccount(target.target_id, NOT_STARTED) for target in order.targets)
         self.account = ExecutionAccount(order.execution_id, EXECUTING, targets)
 
@@ -79,11 +81,12 @@ class Execution:
         self._wanted_pace = 0.0
 
     def resume(self) -> None:
-        """Go on along the path."""
-        self._wanted_pace = 1.0
+        """Go on along the path, unless it was canceled."""
+        if not self._canceling:
+            self._wanted_pace = 1.0
 
     def cancel(self) -> None:
-        """Slow down to a stand on the path and end there."""
+        """Slow down to a stand on the path and end there; nothing takes that back."""
         self._wanted_pace = 0.0
         self._canceling = True
 
@@ -99,17 +102,22 @@ class Execution:
         yield from self._stream(self._way_to_start())
         yield from self._settle()
         for index, target in enumerate(self._order.targets):
+            self._worked_on = False
             self._change_target(index, status=EXECUTING)
             yield from self._thin(index, target)
         yield from self._settle()
         self._change(status=COMPLETED, segment=None)
 
     def end(self, error: HardwareError) -> None:
-        """Close the account: canceled or failed, the target in hand skipped, with the reason."""
+        """Close the account: canceled or failed, with the reason.
+
+        The target in hand is skipped, or unknown once the end-effector was on it.
+        """
         failure = Failure(error.code, error.detail, timestamp())
         for index, target in enumerate(self.account.targets):
             if target.status == EXECUTING:
-                self._change_target(index, status=SKIPPED, error=failure)
+                status = UNKNOWN if self._worked_on else SKIPPED
+                self._change_target(index, status=status, error=failure)
         status = CANCELED if isinstance(error, Canceled) else FAILED
         self._change(status=status, segment=None, error=failure)
 
@@ -127,7 +135,7 @@ class Execution:
 
     def _way_to_start(self) -> Segment:
         motion = time_joint_line(
-            _slowed(self._arm.robot), self._arm.read_joints(), self._order.start, TICK_S
+            _slowed(self._arm.robot), self._arm.commanded, self._order.start, TICK_S
         )
         return Segment("approach", motion.times_s, motion.joints)
 
@@ -141,16 +149,19 @@ class Execution:
 
     def _dwell(self, segment: Segment) -> Iterator[None]:
         self._change(segment=segment.name)
-        elapsed, on = 0.0, False
-        while elapsed < segment.duration_s:
+        left, on = segment.duration_s, False
+        while left > 0:
             if on != (self._wanted_pace > 0):
                 on = not on
+                self._worked_on = True
                 self._end_effector.switch(on=on)
             if on:
                 self._end_effector.stay_on()
-                elapsed += TICK_S
             self._next_pace()
+            since = self._arm.clock.now()
             yield
+            # By the clock and not by ticks: a late tick is light all the same.
+            left -= self._arm.clock.now() - since if on else 0.0
         self._end_effector.switch(on=False)
 
     def _settle(self) -> Iterator[None]:

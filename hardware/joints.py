@@ -154,7 +154,7 @@ def calibrated(arm: ArmMap, document: bytes) -> ArmMap:
         if data["robot"] != arm.robot:
             raise InvalidArm(f"the calibration is of {data['robot']}, not of {arm.robot}")
         offsets = {name: math.radians(value) for name, value in data["offset_deg"].items()}
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise InvalidArm(f"the calibration file cannot be read: {error}") from error
     if set(offsets) != {drive.joint for drive in arm.drives}:
         raise InvalidArm("the calibration needs one offset for each joint, and no other")

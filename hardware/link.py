@@ -50,9 +50,14 @@ def link_url(service_url: str, robot: str) -> str:
     Raises:
         LinkRefused: not such an address.
     """
-    parts = urlsplit(service_url)
-    scheme = {"http": "ws", "https": "wss"}.get(parts.scheme)
-    if scheme is None or not parts.netloc:
+    try:
+        parts = urlsplit(service_url)
+        scheme = {"http": "ws", "https": "wss"}.get(parts.scheme)
+        usable = scheme is not None and bool(parts.hostname) and (parts.port is None or parts.port)
+        (parts.hostname or "").encode("idna")
+    except ValueError:
+        usable = False
+    if not usable or scheme is None:
         raise LinkRefused(f"{service_url} is not the http or https address of a service")
     path = f"{parts.path.rstrip('/')}/v1/robots/{quote(robot, safe='')}/link"
     return urlunsplit((scheme, parts.netloc, path, "", ""))

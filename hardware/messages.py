@@ -34,6 +34,8 @@ SKIPPED: Final = "skipped"
 UNKNOWN: Final = "unknown"
 
 T = TypeVar("T")
+Count = Annotated[int, Field(ge=0, lt=2**31)]
+Distance = Annotated[float, Field(ge=0)]
 Rows = tuple[tuple[float, ...], ...]
 
 
@@ -64,19 +66,21 @@ class ServoHealth:
     """What one servo said last.
 
     Attributes:
+        torque: whether it is under power: torque enabled, and a torque limit above 0.
         errors: names of the error bits in its last answer.
         load_share: present load as a share of full torque, inferred by the servo, signed.
         retries: reads of it that had to be repeated since the worker started.
     """
 
-    id: int
+    id: Count
     joint: str
+    torque: bool
     position_rad: float
     load_share: float
     voltage_v: float
-    temperature_c: int
+    temperature_c: Count
     errors: tuple[str, ...]
-    retries: int
+    retries: Count
     read_at: str
 
 
@@ -95,8 +99,8 @@ class TargetAccount:
     status: str
     measured_standby_joints: tuple[float, ...] | None = None
     measured_thinning_joints: tuple[float, ...] | None = None
-    standby_error_m: float | None = None
-    target_error_m: float | None = None
+    standby_error_m: Distance | None = None
+    target_error_m: Distance | None = None
     error: Failure | None = None
 
 
@@ -124,7 +128,7 @@ class Telemetry:
         status: idle, executing, paused or fault.
         joints: from the last reads; absent until every servo has been read.
         joints_read_at: when the oldest of those reads was made.
-        torque: on, off or unknown.
+        torque: on, off, partly, or unknown while a servo does not answer.
         end_effector_state: on, off, none or unknown.
         faults: latched until acknowledged.
         overruns: ticks of the control loop that came late since the worker started.
@@ -135,7 +139,7 @@ class Telemetry:
     end_effector_state: str
     faults: tuple[Failure, ...]
     servos: tuple[ServoHealth, ...]
-    overruns: int
+    overruns: Count
     joints: tuple[float, ...] | None = None
     joints_read_at: str | None = None
     execution_id: str | None = None
@@ -214,7 +218,7 @@ class Execute:
     tool: str
     model_version: str
     start_joints: tuple[float, ...]
-    target_count: int
+    target_count: Count
     type: Literal["execute"] = "execute"
 
 
@@ -232,7 +236,7 @@ class TargetMotion:
     """The verified, timed motion for one target, joint-linear between rows."""
 
     execution_id: str
-    index: int
+    index: Count
     target_id: str
     standby_joints: tuple[float, ...]
     thinning_joints: tuple[float, ...]

@@ -11,10 +11,13 @@ class BadOption(HardwareError):
     code = "bad_option"
 
 
+MOST_TIME_FACTOR = 1e6
+
+
 def check_time_factor(factor: float) -> None:
-    """Refuse a time factor that is not a number above 0."""
-    if not 0 < factor < math.inf:
-        raise BadOption("--time-factor is a number above 0")
+    """Refuse a time factor that makes no sense."""
+    if not 0 < factor <= MOST_TIME_FACTOR:
+        raise BadOption(f"--time-factor is a number above 0, and at most {MOST_TIME_FACTOR:g}")
 
 
 def joints_from_degrees(text: str, count: int) -> tuple[float, ...]:

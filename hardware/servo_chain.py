@@ -41,7 +41,7 @@ class ServoChain:
     def read_drive(self, drive: JointDrive) -> tuple[float, ...]:
         """What each motor of a joint says about the first one's count; raises like `value`."""
         for motor in drive.motors:
-            self._read_health(drive, motor)
+            _raise_alarm(motor.id, self._read_health(drive, motor))
         return drive.first_motor_ticks(self._positions)
 
     def sweep(self) -> dict[int, int]:
@@ -64,12 +64,30 @@ class ServoChain:
                 values[motor.id] = int.from_bytes(reply.data, "little")
         return values
 
+    def survey(self) -> dict[int, int]:
+        """Counts from one read of every servo that answers, whatever errors it reports, by id.
+
+        Raises:
+            BusLost: the device is gone.
+        """
+        found: dict[int, int] = {}
+        for drive in self.map.drives:
+            for motor in drive.motors:
+                with contextlib.suppress(ServoMissing, CorruptPackets):
+                    self._read_health(drive, motor)
+                    found[motor.id] = self._positions[motor.id]
+        return found
+
     def last_posture(self) -> tuple[Array, str] | None:
         """The posture from the last read of every servo, and when the oldest read was made."""
         if len(self._positions) < len(self.map.motors):
             return None
         read_at = min(health.read_at for health in self._health.values())
         return self.map.joints(self._positions), read_at
+
+    def is_powered(self, servo_id: int) -> bool:
+        """Whether a servo that was read was under power then."""
+        return self._health[servo_id].torque
 
     def health(self) -> tuple[ServoHealth, ...]:
         """What every servo said last, in joint order."""
@@ -104,9 +122,9 @@ class ServoChain:
         if found != wanted:
             raise WrongSetting(motor.id, f"{name} reads {found} after {wanted} was written")
 
-    def _read_health(self, drive: JointDrive, motor: Motor) -> None:
+    def _read_health(self, drive: JointDrive, motor: Motor) -> StatusReply:
         registers = motor.servo.registers
-        first, last = registers["present_position"], registers["present_temperature"]
+        first, last = registers["torque_enable"], registers["present_temperature"]
         reply = self.bus.read(motor.id, first.address, last.address + last.size - first.address)
 
         def value(name: str) -> int:
@@ -120,6 +138,7 @@ class ServoChain:
         self._health[motor.id] = ServoHealth(
             id=motor.id,
             joint=drive.joint,
+            torque=value("torque_enable") == 1 and value("torque_limit") > 0,
             position_rad=drive.angle(own),
             load_share=load_share(value("present_load")),
             voltage_v=voltage_v(value("present_voltage")),
@@ -128,7 +147,7 @@ class ServoChain:
             retries=self.bus.retries.get(motor.id, 0),
             read_at=timestamp(),
         )
-        _raise_alarm(motor.id, reply)
+        return reply
 
 
 def _raise_alarm(servo_id: int, reply: StatusReply) -> None:

@@ -104,9 +104,13 @@ GUARD_S: Final = 0.5
 RENEW_S: Final = 0.1
 """How often it is told [s, wall clock]: five times in that."""
 
-GUARD_ANSWER_S: Final = 1.0
-"""A guard that does not answer for so long is lost [s, wall clock]; a stop waits for it, and
-for the hold, within the 3 s that the service waits for its report."""
+GUARD_ANSWER_S: Final = 0.5
+"""A guard that does not answer for so long is lost [s, wall clock]. Not longer than GUARD_S: so no
+dwell lasts longer than it was asked to by more than this."""
+
+GUARD_START_S: Final = 5.0
+"""A guard that has not said so long after its start that the output is off does not work [s, wall
+clock]; an interpreter has to start first."""
 
 # --- Link -----------------------------------------------------------------------------------------
 TELEMETRY_S: Final = 0.1

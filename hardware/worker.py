@@ -10,7 +10,7 @@ acknowledges it and the servos check out.
 
 import logging
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from hardware.arm import HeldPosture, ServoArm
@@ -30,6 +30,7 @@ from hardware.exceptions import (
     WorkerEnded,
 )
 from hardware.execution import Execution
+from hardware.fault_latch import FaultLatch
 from hardware.journal import Journal
 from hardware.link import RobotLink
 from hardware.messages import (
@@ -90,7 +91,7 @@ class Worker:
         self._link = link
         self._journal = journal
         self._clock = clock
-        self._faults: tuple[Failure, ...] = ()
+        self._faults = FaultLatch()
         self._incoming: tuple[Execute, list[TargetMotion]] | None = None
         self._execution: Execution | None = None
         self._steps: Iterator[None] = iter(())
@@ -182,7 +183,7 @@ class Worker:
             if self._execution is not None:
                 raise OrderRefused("another execution is under way")
             if self._faults:
-                raise OrderRefused(f"a fault is to be acknowledged: {self._faults[0].code}")
+                raise OrderRefused(f"faults to acknowledge: {', '.join(self._faults.codes)}")
             order = build_order(self._arm.robot, self._tool, self._arm.map, execute, motions)
             self._journal.start(order.execution_id)
         except HardwareError as error:
@@ -205,30 +206,38 @@ class Worker:
 
     def _acknowledge(self, message: Acknowledge) -> None:
         if self._execution is None:
-            self._faults = ()
+            self._faults.clear()
             try:
                 for execution_id in tuple(self._journal.unfinished):
                     self._journal.end(execution_id, Interrupted.code)
             except JournalFailed as error:
-                self._latch(error.code, error.detail)
+                self._faults.latch(error)
             self._look_around()
         self._say_telemetry(now_due=True)
-        self._link.say(AcknowledgeReport(message.request_id, self._faults))
+        self._link.say(AcknowledgeReport(message.request_id, self._faults.failures))
 
     def _look_around(self) -> None:
         """Check servos and end-effector; what is wrong becomes a fault."""
         if self._journal.unfinished:
             detail = "a worker ended in the middle of an execution; look at the arm"
-            self._latch(Interrupted.code, detail)
+            self._faults.latch(Interrupted(detail))
         try:
             self._end_effector.switch(on=False)
-            try:
-                self._arm.check()
-            except BusLost:
-                self._arm.chain.bus.reopen()
-                self._arm.check()
+        except HardwareError:
+            self._try(self._end_effector.recover)
+        try:
+            self._arm.check()
+        except BusLost:
+            self._try(self._arm.chain.bus.reopen)
+            self._try(self._arm.check)
         except HardwareError as error:
-            self._latch(error.code, error.detail)
+            self._faults.latch(error)
+
+    def _try(self, mend: Callable[[], None]) -> None:
+        try:
+            mend()
+        except HardwareError as error:
+            self._faults.latch(error)
 
     # --- Motion -----------------------------------------------------------------------------------
     def _advance(self) -> None:
@@ -240,6 +249,7 @@ class Worker:
                     self._finish(self._execution)
             if not self._is_bus_lost:
                 self._arm.poll()
+            self._end_effector.check()
         except HardwareError as error:
             self._fail(error)
         except Exception as error:
@@ -248,20 +258,25 @@ class Worker:
 
     @property
     def _is_bus_lost(self) -> bool:
-        lost = (BusLost.code, PortUnavailable.code)
-        return any(fault.code in lost for fault in self._faults)
+        return not {BusLost.code, PortUnavailable.code}.isdisjoint(self._faults.codes)
 
     def _fail(self, error: HardwareError) -> None:
         """Make everything safe, end what runs, and latch the fault unless it was asked for."""
-        if any(fault.code == error.code for fault in self._faults):
+        if self._execution is None and self._faults:
+            self._faults.latch(error)  # the arm is held already
             return
         _, trouble = self._make_safe()
-        detail = "; ".join((error.detail, *trouble))
-        if self._execution is not None:
-            self._execution.end(error)
-            self._finish(self._execution)
         if trouble or not isinstance(error, Canceled):
-            self._latch(error.code, detail)
+            self._faults.latch(error, trouble)
+        self._end_execution(error)
+
+    def _end_execution(self, error: HardwareError) -> None:
+        execution = self._execution
+        if execution is not None:
+            # State first: who hears that an execution failed may look for the fault at once.
+            self._say_telemetry(now_due=True)
+            execution.end(error)
+            self._finish(execution)
 
     def _finish(self, execution: Execution) -> None:
         self._execution = None
@@ -269,15 +284,13 @@ class Worker:
         try:
             self._journal.end(execution.account.execution_id, execution.account.status)
         except JournalFailed as error:
-            self._latch(error.code, error.detail)
+            self._faults.latch(error)
 
     def _stop(self, stop: Stop) -> StopReport:
         held, trouble = self._make_safe()
         self._refuse_incoming(Stopped("stopped on request"))
-        if self._execution is not None:
-            self._execution.end(Stopped("stopped on request"))
-            self._finish(self._execution)
-        self._latch(Stopped.code, "; ".join(("stopped on request", *trouble)))
+        self._faults.latch(Stopped("stopped on request"), trouble)
+        self._end_execution(Stopped("stopped on request"))
         detail = "; ".join(trouble) or STOP_DETAILS.get(self._arm.torque, STOPPED_AS_IT_WAS)
         if held is None or held.joints is None:
             return StopReport(stop.request_id, stopped=False, verified=False, detail=detail)
@@ -306,12 +319,6 @@ class Worker:
             trouble.append(held.detail)
         return held, tuple(trouble)
 
-    def _latch(self, code: str, detail: str) -> None:
-        if any(fault.code == code for fault in self._faults):
-            return  # the first one is the cause
-        logger.error("%s: %s", code, detail)
-        self._faults = (*self._faults, Failure(code, detail, timestamp()))
-
     # --- Telemetry --------------------------------------------------------------------------------
     def _say_telemetry(self, *, now_due: bool = False) -> None:
         now = self._clock.now()
@@ -320,5 +327,11 @@ class Worker:
         self._telemetry_due = now + TELEMETRY_S * self._clock.factor
         account = None if self._execution is None else self._execution.account
         self._link.say(
-            telemetry(self._arm, self._end_effector, self._faults, account, self._overruns)
+            telemetry(
+                self._arm,
+                self._end_effector,
+                self._faults.failures,
+                account,
+                self._overruns,
+            )
         )

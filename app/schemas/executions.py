@@ -75,6 +75,7 @@ class ServoAnswer(BaseModel):
 
     id: int
     joint: str
+    torque: bool = Field(description="whether it is under power")
     position_rad: float
     load_share: float = Field(description="present load as a share of full torque, signed")
     voltage_v: float

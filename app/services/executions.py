@@ -65,12 +65,14 @@ class _Order:
     Attributes:
         handed_over: its messages are with the link.
         withdrawn: the worker will never have all of them, so it cannot begin.
+        canceling: a cancel was accepted; nothing takes it back.
     """
 
     execution_id: str
     link: Link
     handed_over: bool = False
     withdrawn: bool = False
+    canceling: bool = False
 
     def withdraw(self) -> bool:
         """Keep the worker from beginning; False if it may have begun."""
@@ -200,6 +202,9 @@ class ExecutionService:
             order = self._orders.get(robot)
             if execution.status not in allowed or order is None:
                 raise wrong_state(execution, allowed)
+            if order.canceling and command is not Cancel:
+                raise ProblemError(409, "wrong_state", "The execution is being canceled.")
+            order.canceling |= command is Cancel
             withdrawn = command is Cancel and order.withdraw()
             if order.handed_over:
                 order.link.outbox.send(command(execution_id))

@@ -12,6 +12,8 @@ from hardware.simulator.bus import simulated_arm
 from hardware.simulator.faults import FAULTS, apply_fault
 from hardware.simulator.pseudo_terminal import serve_bus
 
+MOST_NOISE_TICKS = 1000
+
 
 def run_servo_bus(
     *,
@@ -34,8 +36,8 @@ def run_servo_bus(
         UnknownRobot, HardwareError: no such robot, arm, calibration or link, or a start where a
             servo cannot stand.
     """
-    if noise_ticks < 0:
-        raise BadOption("--noise-ticks is 0 or more")
+    if not 0 <= noise_ticks <= MOST_NOISE_TICKS:
+        raise BadOption(f"--noise-ticks is between 0 and {MOST_NOISE_TICKS}")
     check_time_factor(time_factor)
     instance = load_instance(robot)
     arm = load_arm(instance.robot, instance.model, calibration)

@@ -3,7 +3,6 @@
 Nothing here moves a servo: the only register that is written is the LED's.
 """
 
-import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ from hardware.dynamixel_bus import DynamixelBus
 from hardware.exceptions import PortUnavailable, ServoMissing
 from hardware.instances import load_instance
 from hardware.joints import ArmMap, load_arm
+from tests.conftest import SERVO_PORT
 
 REPOSITORY = Path(__file__).parents[2]
 ABSENT_ID = 200
@@ -41,8 +41,8 @@ def device(request: pytest.FixtureRequest) -> Iterator[str]:
     if request.param == "simulated":
         with servo_bus() as (path, _):
             yield path
-    elif port := os.environ.get("PRUNUS_PORT"):
-        yield port
+    elif SERVO_PORT:
+        yield SERVO_PORT
     else:
         pytest.skip("PRUNUS_PORT names no real port")
 

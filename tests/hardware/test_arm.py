@@ -8,6 +8,7 @@ from hardware.exceptions import (
     PairDisagreement,
     ServoAlarm,
     ServoMissing,
+    TorqueLost,
     UnsafeGoal,
     WrongSetting,
 )
@@ -232,3 +233,63 @@ def test_a_posture_is_known_once_every_servo_was_read() -> None:
     assert read_at.endswith("Z")
     assert [health.id for health in bench.arm.chain.health()] == [11, 21, 22, 31, 32, 41, 51, 61]
     assert {health.voltage_v for health in bench.arm.chain.health()} == {16.0}
+
+
+def test_torque_that_is_lost_is_noticed_and_the_state_says_so(bench: Bench) -> None:
+    bench.arm.enable_torque()
+    bench.fault("power-cycle")
+    with pytest.raises(TorqueLost):
+        bench.arm.poll()
+    assert bench.arm.torque == "partly"
+    sent = len(bench.bus.sent)
+    held = bench.arm.hold()
+    assert held.still
+    assert bench.arm.torque == "off"
+    # A goal would put the servos under power again.
+    assert {packet[4] for packet in bench.bus.sent[sent:]} == {2}
+    for _ in range(30):
+        bench.arm.poll()
+
+
+def test_a_hold_sends_goals_only_to_servos_under_power(bench: Bench) -> None:
+    bench.arm.enable_torque()
+    set_register(bench, 41, "torque_enable", 0)
+    set_register(bench, 22, "torque_limit", 0)
+    held = bench.arm.hold()
+    assert "22, 41" in held.detail
+    assert bench.arm.torque == "partly"
+    servo = bench.bus.simulated.servo(41)
+    assert servo is not None
+    assert servo.table["torque_enable"] == 0
+    packet = next(packet for packet in reversed(bench.bus.sent) if packet[4] == 0x83)
+    assert packet[7:-1:5] == bytes((11, 21, 31, 32, 51, 61))
+
+
+def test_a_check_that_fails_still_learns_where_torque_is_on(bench: Bench) -> None:
+    bench.arm.enable_torque()
+    bench.fault("voltage 41")
+    with pytest.raises(ServoAlarm):
+        bench.arm.check()
+    assert bench.arm.torque == "on"
+    assert bench.arm.hold().still
+
+
+def test_after_a_bus_came_back_with_other_servos_nothing_lags(bench: Bench) -> None:
+    bench.arm.enable_torque()
+    bench.fault("power-cycle")
+    bench.arm.check()
+    assert bench.arm.torque == "off"
+    set_register(bench, 51, "goal_position", 300)
+    servo = bench.bus.simulated.servo(51)
+    assert servo is not None
+    servo._position = 300
+    for _ in range(30):
+        bench.arm.poll()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_arm_at_its_limits_can_leave_them(seed: int) -> None:
+    robot = make_bench().robot
+    bench = make_bench(tuple(robot.upper.tolist()), seed=seed)
+    bench.arm.enable_torque()
+    bench.arm.command(bench.arm.commanded - 0.01, TICK_S)

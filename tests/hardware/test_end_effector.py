@@ -7,7 +7,7 @@ import pytest
 
 from hardware.end_effector import END_EFFECTORS, OFF, ON, UNKNOWN, EndEffector, GuardedEndEffector
 from hardware.exceptions import EndEffectorFailed
-from hardware.tolerances import GUARD_S
+from hardware.tolerances import GUARD_S, RENEW_S
 from tests.app.conftest import wait_until
 
 
@@ -76,6 +76,48 @@ def test_a_dead_guard_is_an_unknown_state_and_no_success(laser: GuardedEndEffect
     with pytest.raises(EndEffectorFailed):
         laser.switch(on=False)
     assert laser.state == UNKNOWN
+
+
+def test_a_dead_guard_is_noticed_without_being_asked(laser: GuardedEndEffector) -> None:
+    laser.check()
+    laser._guard.kill()
+    laser._guard.wait()
+    with pytest.raises(EndEffectorFailed, match="gone"):
+        laser.check()
+    assert laser.state == UNKNOWN
+    laser.recover()
+    laser.check()
+    laser.switch(on=True)
+    assert laser.state == ON
+
+
+def test_a_guard_that_stood_still_went_off_and_its_late_answers_are_nobodys(
+    laser: GuardedEndEffector, record: Path
+) -> None:
+    laser.switch(on=True)
+    laser._guard.send_signal(signal.SIGSTOP)
+    time.sleep(RENEW_S)
+    with pytest.raises(EndEffectorFailed, match="does not answer"):
+        laser.stay_on()
+    time.sleep(GUARD_S)
+    laser._guard.send_signal(signal.SIGCONT)
+    wait_until(lambda: changes(record)[-1] == (OFF, "not told to stay on"), 10)
+    for on in (False, True, False):
+        laser.switch(on=on)
+        assert laser.state == (ON if on else OFF)
+
+
+def test_a_guard_that_does_not_end_is_ended(laser: GuardedEndEffector) -> None:
+    laser._guard.send_signal(signal.SIGSTOP)
+    laser.close()
+    assert laser._guard.returncode is not None
+    assert laser.state == UNKNOWN
+    laser.recover()
+
+
+def test_a_record_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    with pytest.raises(EndEffectorFailed, match="nowhere"):
+        GuardedEndEffector("simulated", tmp_path / "nowhere" / "record.txt")
 
 
 def test_a_guard_that_is_told_to_end_switches_off_first(

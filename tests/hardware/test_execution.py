@@ -16,6 +16,7 @@ from hardware.exceptions import (
     PairDisagreement,
     ServoAlarm,
     ServoMissing,
+    TorqueLost,
     UnsafeGoal,
 )
 from hardware.execution import Execution
@@ -29,6 +30,7 @@ from hardware.messages import (
     NOT_STARTED,
     PAUSED,
     SKIPPED,
+    UNKNOWN,
     ExecutionAccount,
 )
 from hardware.order import Order, build_order
@@ -53,6 +55,12 @@ class RecordedEndEffector:
 
     def stay_on(self) -> None:
         assert self.state == ON
+
+    def check(self) -> None:
+        pass
+
+    def recover(self) -> None:
+        self.switch(on=False)
 
     def close(self) -> None:
         self.state = OFF
@@ -303,10 +311,33 @@ def test_cancel_ends_on_the_path(segment: str) -> None:
     run.execution.end(caught.value)
     account = run.execution.account
     assert account.status == CANCELED
-    first = {"approach": NOT_STARTED, "retreat": DONE}.get(segment, SKIPPED)
+    first = {"approach": NOT_STARTED, "dwell": UNKNOWN, "retreat": DONE}.get(segment, SKIPPED)
     assert [target.status for target in account.targets] == [first, *[NOT_STARTED] * 4]
     assert run.end_effector.state == OFF
     assert run.bench.arm.hold().still
+
+
+def test_a_cancel_cannot_be_taken_back() -> None:
+    run = start_run()
+    run.until("transfer", 5)
+    run.execution.pause()
+    for _ in range(30):
+        assert run.tick()
+    run.execution.cancel()
+    run.execution.resume()
+    run.execution.pause()
+    with pytest.raises(Canceled):
+        run.tick()
+
+
+def test_a_dwell_lasts_as_long_as_asked_even_if_ticks_are_late() -> None:
+    run = start_run()
+    run.until("dwell")
+    began = run.bench.time.now_s
+    while run.execution.account.segment == "dwell":
+        assert run.tick()
+        run.bench.time.sleep(0.03)
+    assert 0.2 <= run.bench.time.now_s - began < 0.2 + 2 * 0.05
 
 
 @pytest.mark.parametrize(
@@ -338,6 +369,15 @@ def test_faults_in_the_middle_are_named(
     assert account.error is not None
     assert account.error.code == caught.value.code
     assert account.error.detail
+
+
+def test_a_servo_that_loses_its_power_in_a_dwell_is_named() -> None:
+    """While goals are streamed the next one may put it under power again, and nobody can tell."""
+    run = start_run()
+    run.until("dwell", 3)
+    run.bench.fault("power-cycle")
+    with pytest.raises(TorqueLost):
+        run.finish()
 
 
 def test_orders_for_another_model_tool_or_incomplete_are_refused() -> None:

@@ -87,7 +87,16 @@ def test_urls_of_links() -> None:
     assert link_url("https://orchard/prunus/", "a/b ü") == (
         "wss://orchard/prunus/v1/robots/a%2Fb%20%C3%BC/link"
     )
-    for wrong in ("orchard:8000", "ftp://orchard", "", "http://"):
+    for wrong in (
+        "orchard:8000",
+        "ftp://orchard",
+        "",
+        "http://",
+        "http://[::1",
+        "http://orchard:99999",
+        "http://orchard:0",
+        f"http://{'a' * 64}",
+    ):
         with pytest.raises(LinkRefused):
             link_url(wrong, "a")
 

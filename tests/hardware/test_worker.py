@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hardware.arm import ServoArm
 from hardware.clock import RobotClock
 from hardware.end_effector import OFF, ON
 from hardware.exceptions import EndEffectorFailed
@@ -42,6 +43,7 @@ class ScriptedLink:
     """A robot link; `due` says what comes at which wall clock instant."""
 
     bench: Bench
+    end_effector: "PlainEndEffector"
     due: deque[tuple[float, FromService | str]] = field(default_factory=deque)
     said: list[Telemetry | ExecutionAccount | StopReport | AcknowledgeReport] = field(
         default_factory=list
@@ -89,6 +91,8 @@ class ScriptedLink:
                 self.bench.bus.gone = True
             elif word == "sleep":
                 self.bench.time.sleep(5)
+            elif word == "break end-effector":
+                self.end_effector.gone = True
             elif word == "end":
                 assert self.worker is not None
                 self.worker.end()
@@ -100,9 +104,11 @@ class ScriptedLink:
 class PlainEndEffector:
     state: str = OFF
     broken: bool = False
+    gone: bool = False
     switched: list[str] = field(default_factory=list)
 
     def switch(self, *, on: bool) -> None:
+        self.check()
         if self.broken and on:
             raise EndEffectorFailed("it does not come on")
         self.state = ON if on else OFF
@@ -110,6 +116,14 @@ class PlainEndEffector:
 
     def stay_on(self) -> None:
         assert self.state == ON
+
+    def check(self) -> None:
+        if self.gone:
+            raise EndEffectorFailed("it is gone")
+
+    def recover(self) -> None:
+        self.gone = False
+        self.switch(on=False)
 
     def close(self) -> None:
         self.state = OFF
@@ -143,14 +157,16 @@ class Scene:
         return [said for said in self.link.said if isinstance(said, StopReport)]
 
 
-def make_scene(folder: Path) -> Scene:
-    bench = make_bench()
+def make_scene(folder: Path, bench: Bench | None = None) -> Scene:
+    bench = bench or make_bench()
     tool = bench.robot.tool(bench.robot.default_tool)
     assert tool is not None
-    link, end_effector = ScriptedLink(bench), PlainEndEffector()
+    end_effector = PlainEndEffector()
+    link = ScriptedLink(bench, end_effector)
     journal = Journal(folder / "worker.journal")
     clock = RobotClock(monotonic=bench.time.monotonic, sleep=bench.time.sleep)
-    worker = Worker(bench.arm, tool, end_effector, link, journal, clock)  # type: ignore[arg-type]
+    arm = ServoArm(bench.robot, bench.map, bench.bus, clock)
+    worker = Worker(arm, tool, end_effector, link, journal, clock)  # type: ignore[arg-type]
     link.worker = worker
     return Scene(bench, link, worker, end_effector, journal)
 
@@ -322,7 +338,8 @@ def test_trouble_in_the_middle_ends_it_with_the_cause(
     assert account.error is not None
     assert account.error.code == code
     assert scene.end_effector.state == OFF
-    assert [fault.code for fault in scene.telemetry()[-1].faults] == [code]
+    # Of a silent bus every servo is told, each time the same.
+    assert {fault.code for fault in scene.telemetry()[-1].faults} == {code}
     position = scene.bench.true_joints()
     scene.bench.time.sleep(5)
     assert scene.bench.true_joints() == position
@@ -369,6 +386,52 @@ def test_a_bus_that_came_back_is_opened_by_acknowledging(scene: Scene) -> None:
     scene.run(5.0)
     (report,) = [said for said in scene.link.said if isinstance(said, AcknowledgeReport)]
     assert report.faults == ()
+
+
+def test_an_end_effector_that_fails_is_recovered_by_acknowledging(scene: Scene) -> None:
+    scene.link.at(1.0, "break end-effector")
+    scene.link.at(2.0, Acknowledge("a1"))
+    scene.run(4.0)
+    faults = [tuple(fault.code for fault in said.faults) for said in scene.telemetry()]
+    assert set(faults) == {(), ("end_effector_failed",)}
+    assert faults[-1] == ()
+
+
+def test_torque_lost_in_idle_is_a_fault_and_a_stop_says_that_it_is_off(scene: Scene) -> None:
+    scene.order()
+    scene.link.at(30.0, "power-cycle")
+    scene.link.at(31.0, Stop("s1"))
+    scene.run(35.0)
+    assert scene.accounts()[-1].status == COMPLETED
+    assert [fault.code for fault in scene.telemetry()[-1].faults] == ["torque_lost", "stopped"]
+    assert scene.telemetry()[-1].torque == "off"
+    (report,) = scene.stop_reports()
+    assert "torque is off" in report.detail
+    assert all(servo.table["torque_enable"] == 0 for servo in scene.bench.bus.simulated.servos)
+
+
+def test_a_stop_after_a_killed_worker_holds_and_knows_that_torque_is_on(tmp_path: Path) -> None:
+    first = make_scene(tmp_path)
+    first.bench.arm.enable_torque()
+    first.journal.start("e1")
+    second = make_scene(tmp_path, first.bench)
+    second.link.at(1.0, Stop("s1"))
+    sent = len(first.bench.bus.sent)
+    second.run(3.0)
+    (report,) = second.stop_reports()
+    assert report.verified
+    assert report.detail == "the arm holds where it stands"
+    assert {packet[4] for packet in first.bench.bus.sent[sent:]} == {2, 0x83}
+
+
+def test_a_second_servo_that_is_lost_is_told_too(scene: Scene) -> None:
+    scene.link.at(1.0, "missing 41")
+    scene.link.at(3.0, "missing 51")
+    scene.run(6.0)
+    details = [fault.detail for fault in scene.telemetry()[-1].faults]
+    assert len(details) == 2
+    assert "41" in details[0]
+    assert "51" in details[1]
 
 
 def test_an_end_effector_that_does_not_come_on_fails_the_execution(scene: Scene) -> None:

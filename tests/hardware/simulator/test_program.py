@@ -241,7 +241,7 @@ def test_a_link_in_a_folder_that_is_not_there() -> None:
     ("option", "line"),
     [
         ("--robot=nowhere", "unknown robot 'nowhere'; known: "),
-        ("--noise-ticks=-1", "--noise-ticks is 0 or more"),
+        ("--noise-ticks=-1", "--noise-ticks is between"),
         ("--time-factor=0", "--time-factor is a number above 0"),
         ("--time-factor=inf", "--time-factor is a number above 0"),
         ("--time-factor=nan", "--time-factor is a number above 0"),
