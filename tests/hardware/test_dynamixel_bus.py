@@ -1,7 +1,11 @@
 """Troubles on the line, through the SDK; what goes well is in tests/contracts/test_bus.py."""
 
+import contextlib
+import os
 import subprocess
+import threading
 import time
+import tty
 from collections.abc import Iterator
 
 import pytest
@@ -84,6 +88,40 @@ def test_a_device_that_is_not_there_is_named() -> None:
         DynamixelBus("/dev/no-such-device")
     assert "/dev/no-such-device" in caught.value.detail
     assert "No such file" in caught.value.detail
+
+
+def test_something_else_than_a_serial_device_is_named() -> None:
+    with pytest.raises(PortUnavailable) as caught:
+        DynamixelBus("/dev/null")
+    assert "Inappropriate ioctl" in caught.value.detail
+
+
+@pytest.mark.parametrize("babble", [b"\xff", b"\xff\xff\x0b\xff", b"\x00\xff\xff\xfe"])
+def test_a_babbling_line_is_corrupt_and_does_not_hold_anybody_up(babble: bytes) -> None:
+    port, client = os.openpty()
+    tty.setraw(client)
+    os.set_blocking(port, False)
+    over = threading.Event()
+
+    def talk() -> None:
+        while not over.is_set():
+            with contextlib.suppress(BlockingIOError):
+                os.write(port, babble * 64)
+            with contextlib.suppress(BlockingIOError):
+                os.read(port, 4096)
+
+    talking = threading.Thread(target=talk)
+    bus = DynamixelBus(os.ttyname(client))
+    talking.start()
+    try:
+        with pytest.raises((CorruptPackets, ServoMissing)):
+            bus.read(11, 36, 2)
+    finally:
+        over.set()
+        talking.join()
+        bus.close()
+        os.close(port)
+        os.close(client)
 
 
 def test_a_rate_that_the_sdk_does_not_know_is_named(line: Line) -> None:

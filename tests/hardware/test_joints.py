@@ -130,6 +130,9 @@ def test_what_ships_is_not_calibrated() -> None:
         calibration(joint_1=math.inf),
         calibration(joint_1=math.nan),
         b'robot = "tabletop"\n[offset_deg]\njoint_1 = "one"\n',
+        b'robot = "tabletop"\noffset_deg = 3\n',
+        b'robot = "tabletop"\noffset_deg = [1, 2]\n',
+        b'robot = "tabletop"\n[offset_deg]\njoint_1 = ' + b"9" * 400 + b"\n",
     ],
 )
 def test_calibrations_that_are_none(document: bytes) -> None:
