@@ -35,6 +35,7 @@ from hardware.journal import Journal
 from hardware.link import RobotLink
 from hardware.messages import (
     CANCELED,
+    ENDED,
     FAILED,
     SILENCE_S,
     Acknowledge,
@@ -190,7 +191,7 @@ class Worker:
             self._refuse(execute, error)
             return
         self._execution = Execution(
-            order, self._arm, self._tool, self._end_effector, self._link.say
+            order, self._arm, self._tool, self._end_effector, self._say_account
         )
         self._steps = self._execution.steps()
 
@@ -273,8 +274,6 @@ class Worker:
     def _end_execution(self, error: HardwareError) -> None:
         execution = self._execution
         if execution is not None:
-            # State first: who hears that an execution failed may look for the fault at once.
-            self._say_telemetry(now_due=True)
             execution.end(error)
             self._finish(execution)
 
@@ -320,12 +319,20 @@ class Worker:
         return held, tuple(trouble)
 
     # --- Telemetry --------------------------------------------------------------------------------
+    def _say_account(self, account: ExecutionAccount) -> None:
+        if account.status in ENDED:
+            # State first: who hears that an execution has ended may look at the arm at once.
+            self._say_telemetry(now_due=True)
+        self._link.say(account)
+
     def _say_telemetry(self, *, now_due: bool = False) -> None:
         now = self._clock.now()
         if now < self._telemetry_due and not now_due:
             return
         self._telemetry_due = now + TELEMETRY_S * self._clock.factor
         account = None if self._execution is None else self._execution.account
+        if account is not None and account.status in ENDED:
+            account = None
         self._link.say(
             telemetry(
                 self._arm,

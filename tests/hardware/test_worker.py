@@ -191,6 +191,22 @@ def test_an_order_is_carried_out_and_accounted_for(scene: Scene) -> None:
     assert ON in {telemetry.end_effector_state for telemetry in scene.telemetry()}
 
 
+def test_the_state_that_goes_before_the_end_is_that_of_the_end(scene: Scene) -> None:
+    scene.order()
+    scene.run()
+    end = next(
+        k
+        for k, said in enumerate(scene.link.said)
+        if isinstance(said, ExecutionAccount) and said.status == COMPLETED
+    )
+    state = scene.link.said[end - 1]
+    assert isinstance(state, Telemetry)
+    assert state.status == "idle"
+    assert state.execution_id is None
+    standby = scene.accounts()[-1].targets[-1].measured_standby_joints
+    assert state.joints == pytest.approx(standby, abs=0.011)
+
+
 def test_nothing_is_written_before_an_order_comes(scene: Scene) -> None:
     scene.run(5.0)
     assert {packet[4] for packet in scene.bench.bus.sent} == {2}
