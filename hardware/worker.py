@@ -13,7 +13,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from hardware.arm import HeldPosture, ServoArm
+from hardware.arm import ServoArm
 from hardware.clock import RobotClock, timestamp
 from hardware.end_effector import EndEffector
 from hardware.exceptions import (
@@ -51,6 +51,7 @@ from hardware.messages import (
     TargetMotion,
 )
 from hardware.order import build_order
+from hardware.safe_state import make_safe, stop_report
 from hardware.telemetry import telemetry
 from hardware.tolerances import IDLE_TICK_S, TELEMETRY_S, TICK_S
 from solver.robots.model import Tool
@@ -58,11 +59,6 @@ from solver.robots.model import Tool
 logger = logging.getLogger(__name__)
 
 ALL_DONE: Final = object()
-STOPPED_AS_IT_WAS: Final = "it is not known where torque is on; nothing moves"
-STOP_DETAILS: Final = {
-    "on": "the arm holds where it stands",
-    "off": "torque is off: nothing was held, and nothing moves",
-}
 
 
 class Worker:
@@ -266,9 +262,9 @@ class Worker:
         if self._execution is None and self._faults:
             self._faults.latch(error)  # the arm is held already
             return
-        _, trouble = self._make_safe()
-        if trouble or not isinstance(error, Canceled):
-            self._faults.latch(error, trouble)
+        safe = make_safe(self._arm, self._end_effector)
+        if safe.trouble or not isinstance(error, Canceled):
+            self._faults.latch(error, safe.trouble)
         self._end_execution(error)
 
     def _end_execution(self, error: HardwareError) -> None:
@@ -286,37 +282,11 @@ class Worker:
             self._faults.latch(error)
 
     def _stop(self, stop: Stop) -> StopReport:
-        held, trouble = self._make_safe()
+        safe = make_safe(self._arm, self._end_effector)
         self._refuse_incoming(Stopped("stopped on request"))
-        self._faults.latch(Stopped("stopped on request"), trouble)
+        self._faults.latch(Stopped("stopped on request"), safe.trouble)
         self._end_execution(Stopped("stopped on request"))
-        detail = "; ".join(trouble) or STOP_DETAILS.get(self._arm.torque, STOPPED_AS_IT_WAS)
-        if held is None or held.joints is None:
-            return StopReport(stop.request_id, stopped=False, verified=False, detail=detail)
-        return StopReport(
-            stop.request_id,
-            stopped=held.still,
-            verified=held.still and not trouble,
-            detail=detail,
-            joints=tuple(held.joints.tolist()),
-            joints_read_at=timestamp(),
-        )
-
-    def _make_safe(self) -> tuple[HeldPosture | None, tuple[str, ...]]:
-        """End-effector off, arm held; and what of that did not work."""
-        trouble: list[str] = []
-        try:
-            self._end_effector.switch(on=False)
-        except HardwareError as error:
-            trouble.append(error.detail)
-        try:
-            held = self._arm.hold()
-        except HardwareError as error:
-            trouble.append(f"the arm could not be told to hold: {error.detail}")
-            return None, tuple(trouble)
-        if held.detail:
-            trouble.append(held.detail)
-        return held, tuple(trouble)
+        return stop_report(stop.request_id, safe, self._arm.torque)
 
     # --- Telemetry --------------------------------------------------------------------------------
     def _say_account(self, account: ExecutionAccount) -> None:
