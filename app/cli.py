@@ -165,7 +165,7 @@ def worker(
 ) -> None:
     """Drive the servos behind a device for the service: one worker an arm.
 
-    Ends with 0 on SIGINT and SIGTERM, leaving the arm holding; with 1 when it cannot work.
+    Ends with 0 on SIGINT, SIGTERM and SIGHUP, leaving the arm holding; with 1 when it cannot work.
     """
     from app.version import prunus_version
     from hardware.exceptions import HardwareError

@@ -62,7 +62,7 @@ class WorkerOptions:
 
 
 def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
-    """Run a worker until SIGINT or SIGTERM; the arm is left holding.
+    """Run a worker until SIGINT, SIGTERM or SIGHUP; the arm is left holding.
 
     Args:
         options: see there.
@@ -99,7 +99,8 @@ def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
         )
         link = RobotLink(link_url(options.url, instance.name), hello, say)
         worker = Worker(arm, tool, end_effector, link, journal, clock)
-        for number in (signal.SIGINT, signal.SIGTERM):
+        # A terminal that is closed ends a worker as properly as ctrl-C does.
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, lambda *_: worker.end())
         worker.run()
         say(f"ended; torque is {arm.torque}" + (": the arm holds" if arm.torque == "on" else ""))

@@ -176,7 +176,7 @@ def test_data_set_3_from_post_to_millimetres(rig: Rig, plan_id: str) -> None:
         execution["targets"][4]["measured_standby_joints"], abs=0.02
     )
     # It holds after its worker has gone, and a new worker takes over from where it stands.
-    rig.worker.terminate()
+    rig.worker.send_signal(signal.SIGHUP)
     assert rig.worker.wait(30) == 0
     rig.assert_holds()
 
