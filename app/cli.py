@@ -218,7 +218,7 @@ def calibrate(
     except (HardwareError, UnknownRobot) as error:
         _fail(str(error), code=1)
     except OSError as error:
-        _fail(f"{error.filename}: {error.strerror}", code=1)
+        _fail(f"{output}: {error.strerror}", code=1)
     for joint, offset in offsets.items():
         typer.echo(f"{joint} {math.degrees(offset):+.3f} deg")
 

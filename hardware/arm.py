@@ -50,20 +50,26 @@ class ServoArm:
 
     Attributes:
         clock: robot time.
-        torque: "on", "off" or "partly"; "unknown" before the first check, or while a servo does not
-            answer.
     """
 
     def __init__(self, robot: Robot, arm: ArmMap, bus: ServoBus, clock: RobotClock) -> None:
         self.robot = robot
         self.map = arm
         self.chain = ServoChain(arm, bus)
-        self.torque = "unknown"
         self.clock = clock
+        self._holding = False
         self._commanded: Array | None = None
         self._next_poll = 0
         self._lagging: Counter[str] = Counter()
         self._disagreeing: Counter[str] = Counter()
+
+    @property
+    def torque(self) -> str:
+        """By the last reads: on, off or partly; unknown while a servo does not answer."""
+        powered = self.chain.powered
+        if len(powered) < len(self.map.motors):
+            return "unknown"
+        return "on" if all(powered.values()) else "partly" if any(powered.values()) else "off"
 
     @property
     def commanded(self) -> Array:
@@ -78,8 +84,9 @@ class ServoArm:
         Raises:
             HardwareError: see `hardware.setup_check.check_setup`.
         """
-        self._learn_torque(self.chain.survey())
-        if self.torque != "on":
+        self.chain.survey()
+        self._holding = self.torque == "on"
+        if not self._holding:
             self._forget_command()
         check_setup(self.robot, self.chain)
 
@@ -106,7 +113,6 @@ class ServoArm:
         for drive in self.map.drives:
             check_pair(drive, drive.first_motor_ticks(before))
         goals, speed = self._goals_at(before), speed_ticks(HOLD_SPEED_RAD_S)
-        self.torque = "partly"
         self.chain.send(goals, dict.fromkeys(goals, speed))
         for motor in self.map.motors:
             if motor.id in goals:
@@ -118,7 +124,7 @@ class ServoArm:
             if abs(ticks - before[servo_id]) > TORQUE_JUMP_TICKS:
                 detail = f"moved by {ticks - before[servo_id]} counts when torque came on"
                 raise WrongSetting(servo_id, detail)
-        self.torque = "on"
+        self._holding = True
         self._commanded = self.map.joints(before)
 
     def command(self, goal: Array, step_s: float) -> None:
@@ -156,8 +162,9 @@ class ServoArm:
         drive = self.map.drives[i]
         says = self.chain.read_drive(drive)
         self._watch_pair(drive, says)
-        if self._commanded is not None:
+        if self._holding:
             self._watch_power(drive)
+        if self._commanded is not None:
             error = drive.angle(sum(says) / len(says)) - float(self._commanded[i])
             self._watch_lag(drive, error)
 
@@ -175,15 +182,16 @@ class ServoArm:
         """Stop where the arm stands, and see whether it does.
 
         Only servos under power get a goal, as a goal would put the others under power. One that
-        cannot be read keeps its last goal, which is a short step away.
+        cannot be read keeps its last goal, which is a short step away. The two of a pair that
+        disagree are each held where they say they stand, which moves neither.
 
         Raises:
             BusLost: nothing could be sent.
         """
         positions = self.chain.survey()
-        unpowered = self._learn_torque(positions)
+        powered = self.chain.powered
         goals = self._goals_at(positions)
-        if held := {servo_id: goals[servo_id] for servo_id in goals if servo_id not in unpowered}:
+        if held := {servo_id: goals[servo_id] for servo_id in goals if powered.get(servo_id)}:
             self.chain.send(held, dict.fromkeys(held, speed_ticks(HOLD_SPEED_RAD_S)))
         missing = self._missing(positions)
         deadline = self.clock.now() + STILL_S
@@ -197,28 +205,26 @@ class ServoArm:
                 abs(ticks - last[servo_id]) <= STILL_TICKS for servo_id, ticks in positions.items()
             )
         if missing:
-            return HeldPosture(False, None, f"servos {missing} cannot be read")
+            return HeldPosture(False, None, f"these servos cannot be read: {missing}")
         posture = self.map.joints(positions)
         if self.torque == "on" and self._commanded is not None:
             self._commanded = posture
         else:
             self._forget_command()
-        detail = "" if still else "the arm still moves"
-        if self.torque == "partly":
-            without = ", ".join(map(str, unpowered))
-            detail = f"servos {without} have no torque and are not held"
-        return HeldPosture(still, posture, detail)
+        return HeldPosture(still, posture, self._doubts(positions, still))
 
-    def _learn_torque(self, answering: Mapping[int, int]) -> tuple[int, ...]:
-        """Set `torque` from the last reads; the ids that have none."""
-        without = tuple(i for i in answering if not self.chain.is_powered(i))
-        if len(answering) < len(self.map.motors):
-            self.torque = "unknown"
-        elif without:
-            self.torque = "off" if len(without) == len(answering) else "partly"
-        else:
-            self.torque = "on"
-        return without
+    def _doubts(self, positions: Mapping[int, int], still: bool) -> str:
+        """What keeps a hold from being one, in words; "" if nothing does."""
+        doubts = [] if still else ["the arm still moves"]
+        if self.torque == "partly":
+            without = (str(i) for i, powered in self.chain.powered.items() if not powered)
+            doubts.append(f"these servos have no torque and are not held: {', '.join(without)}")
+        for drive in self.map.drives:
+            try:
+                check_pair(drive, drive.first_motor_ticks(positions))
+            except PairDisagreement as error:
+                doubts.append(error.detail)
+        return "; ".join(doubts)
 
     def _forget_command(self) -> None:
         self._commanded = None
@@ -232,16 +238,22 @@ class ServoArm:
         """Goals that keep every joint of which all motors are known where it stands."""
         goals: dict[int, int] = {}
         for drive in self.map.drives:
-            if all(motor.id in positions for motor in drive.motors):
-                says = drive.first_motor_ticks(positions)
+            if any(motor.id not in positions for motor in drive.motors):
+                continue
+            says = drive.first_motor_ticks(positions)
+            try:
+                check_pair(drive, says)
+            except PairDisagreement:
+                goals |= {servo_id: positions[servo_id] for servo_id in drive.goals(0)}
+            else:
                 goals |= drive.goals(round(sum(says) / len(says)))
         return goals
 
     def _watch_power(self, drive: JointDrive) -> None:
         for motor in drive.motors:
-            if not self.chain.is_powered(motor.id):
+            if not self.chain.powered[motor.id]:
+                self._holding = False
                 self._forget_command()
-                self.torque = "partly"
                 raise TorqueLost(motor.id, "has lost its torque: its power failed, or it shut down")
 
     def _watch_lag(self, drive: JointDrive, error: float) -> None:

@@ -13,7 +13,7 @@ from hardware.instances import load_instance
 from hardware.joints import ArmMap, load_arm
 from hardware.options import joints_from_degrees
 from hardware.servo_chain import ServoChain
-from hardware.setup_check import check_pair
+from hardware.setup_check import check_model, check_pair
 from hardware.tolerances import LARGEST_CALIBRATION_RAD, MEASURED_READS
 from solver.robots.model import Array
 
@@ -45,7 +45,10 @@ def calibrate_arm(
     finally:
         bus.close()
     day = datetime.now(UTC).date().isoformat()
-    output.write_bytes(calibration_file(arm, offsets, f"measured {day}"))
+    # Whole or not at all: an earlier calibration is not lost to a full disk.
+    whole = output.with_name(f".{output.name}.new")
+    whole.write_bytes(calibration_file(arm, offsets, f"measured {day}"))
+    whole.replace(output)
     return dict(zip(instance.robot.joint_names, offsets.tolist(), strict=True))
 
 
@@ -64,6 +67,8 @@ def measure_offsets(chain: ServoChain, true_joints: Sequence[float]) -> Array:
         HardwareError: a servo does not answer, reports an error, or a pair disagrees.
     """
     drives = chain.map.drives
+    for motor in chain.map.motors:
+        check_model(chain, motor)
     reads = []
     for _ in range(MEASURED_READS):
         positions = chain.sweep()

@@ -5,6 +5,7 @@ worker dies, hangs, or forgets to say that it shall stay on: off is commanded an
 assumed from a process that is gone. A new kind is an output for the guard and a row here.
 """
 
+import contextlib
 import subprocess
 import sys
 import time
@@ -84,7 +85,7 @@ class GuardedEndEffector:
         self._command = [sys.executable, "-m", "hardware.end_effector_guard", output]
         if record is not None:
             try:
-                record.touch()
+                record.open("a").close()
             except OSError as error:
                 raise EndEffectorFailed(f"{record}: {error.strerror}") from error
             self._command.append(str(record))
@@ -112,11 +113,25 @@ class GuardedEndEffector:
 
     def recover(self) -> None:
         """Another guard, which begins by switching off."""
-        self.close()
+        self._end_guard()
         self._start()
 
     def close(self) -> None:
         """Off: the guard ends when nobody talks to it any more."""
+        if not self._end_guard():
+            # One that is told nothing begins and ends with off.
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                last = subprocess.run(
+                    self._command,
+                    input=b"",
+                    stdout=subprocess.DEVNULL,
+                    timeout=GUARD_START_S,
+                    check=False,
+                )
+                self._state = OFF if last.returncode == 0 else UNKNOWN
+
+    def _end_guard(self) -> bool:
+        """Whether it ended as it should, which switches off."""
         for pipe in (self._guard.stdin, self._guard.stdout):
             if pipe is not None:
                 pipe.close()
@@ -125,7 +140,9 @@ class GuardedEndEffector:
         except subprocess.TimeoutExpired:
             self._guard.kill()
             self._guard.wait()
-        self._state = OFF if self._guard.returncode == 0 else UNKNOWN
+        ended = self._guard.returncode == 0
+        self._state = OFF if ended else UNKNOWN
+        return ended
 
     def _start(self) -> None:
         # Unbuffered: a word is with the guard, or it is an error, when the call returns.

@@ -6,6 +6,7 @@ The output goes off when the line is closed, which a dead worker does, and when 
 was not told to stay so for GUARD_S, which a hanging worker does not.
 """
 
+import contextlib
 import math
 import signal
 import sys
@@ -95,8 +96,11 @@ def main(arguments: list[str]) -> None:
     output = OUTPUTS[name](Path(record[0]) if record else None)
     try:
         guard(output)
+    except OSError as error:
+        sys.exit(f"the end-effector's guard: {error.strerror}")
     finally:
-        output.set(on=False, why="end")
+        with contextlib.suppress(OSError):
+            output.set(on=False, why="end")
 
 
 if __name__ == "__main__":

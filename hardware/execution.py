@@ -155,13 +155,13 @@ class Execution:
                 on = not on
                 self._worked_on = True
                 self._end_effector.switch(on=on)
-            if on:
-                self._end_effector.stay_on()
             self._next_pace()
             since = self._arm.clock.now()
             yield
-            # By the clock and not by ticks: a late tick is light all the same.
-            left -= self._arm.clock.now() - since if on else 0.0
+            if on:
+                # By the clock and not by ticks: a late tick is light all the same, if light it was.
+                self._end_effector.stay_on()
+                left -= self._arm.clock.now() - since
         self._end_effector.switch(on=False)
 
     def _settle(self) -> Iterator[None]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from hardware.control_tables import ServoModel, servo_models
 from hardware.exceptions import InvalidArm
+from hardware.tolerances import LARGEST_CALIBRATION_RAD
 from hardware.units import motor_angle, position_ticks
 from solver.robots.model import Array, Robot
 
@@ -154,12 +155,17 @@ def calibrated(arm: ArmMap, document: bytes) -> ArmMap:
         if data["robot"] != arm.robot:
             raise InvalidArm(f"the calibration is of {data['robot']}, not of {arm.robot}")
         offsets = {name: math.radians(value) for name, value in data["offset_deg"].items()}
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError) as error:
         raise InvalidArm(f"the calibration file cannot be read: {error}") from error
+    except RecursionError as error:
+        raise InvalidArm("the calibration file is nested too deeply") from error
     if set(offsets) != {drive.joint for drive in arm.drives}:
         raise InvalidArm("the calibration needs one offset for each joint, and no other")
-    if not all(math.isfinite(value) for value in offsets.values()):
-        raise InvalidArm("the calibration has an offset that is not finite")
+    if not all(abs(value) <= LARGEST_CALIBRATION_RAD for value in offsets.values()):
+        most = math.degrees(LARGEST_CALIBRATION_RAD)
+        raise InvalidArm(
+            f"the calibration has an offset that is not a number within {most:.1f} deg"
+        )
     drives = (replace(drive, calibration_rad=offsets[drive.joint]) for drive in arm.drives)
     return replace(arm, drives=tuple(drives))
 

@@ -11,13 +11,14 @@ class BadOption(HardwareError):
     code = "bad_option"
 
 
-MOST_TIME_FACTOR = 1e6
+TIME_FACTORS = (1e-3, 1e6)
 
 
 def check_time_factor(factor: float) -> None:
     """Refuse a time factor that makes no sense."""
-    if not 0 < factor <= MOST_TIME_FACTOR:
-        raise BadOption(f"--time-factor is a number above 0, and at most {MOST_TIME_FACTOR:g}")
+    least, most = TIME_FACTORS
+    if not least <= factor <= most:
+        raise BadOption(f"--time-factor is between {least:g} and {most:g}")
 
 
 def joints_from_degrees(text: str, count: int) -> tuple[float, ...]:

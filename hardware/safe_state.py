@@ -36,6 +36,12 @@ def make_safe(arm: ServoArm, end_effector: EndEffector) -> SafeState:
         end_effector.switch(on=False)
     except HardwareError as error:
         trouble.append(error.detail)
+        try:
+            end_effector.recover()
+        except HardwareError as error:
+            trouble.append(error.detail)
+        else:
+            trouble.append("another guard switched it off")
     try:
         held = arm.hold()
     except HardwareError as error:

@@ -6,7 +6,7 @@ from typing import Final
 
 from hardware.bus import ServoBus, StatusReply
 from hardware.clock import timestamp
-from hardware.exceptions import CorruptPackets, ServoAlarm, ServoMissing, WrongSetting
+from hardware.exceptions import BusLost, CorruptPackets, ServoAlarm, ServoMissing, WrongSetting
 from hardware.joints import ArmMap, JointDrive, Motor
 from hardware.messages import ServoHealth
 from hardware.units import load_share, voltage_v
@@ -25,6 +25,7 @@ class ServoChain:
         self.bus = bus
         self._health: dict[int, ServoHealth] = {}
         self._positions: dict[int, int] = {}
+        self._powered: dict[int, bool] = {}
 
     # --- Reading ----------------------------------------------------------------------------------
     def value(self, motor: Motor, name: str) -> int:
@@ -85,9 +86,10 @@ class ServoChain:
         read_at = min(health.read_at for health in self._health.values())
         return self.map.joints(self._positions), read_at
 
-    def is_powered(self, servo_id: int) -> bool:
-        """Whether a servo that was read was under power then."""
-        return self._health[servo_id].torque
+    @property
+    def powered(self) -> Mapping[int, bool]:
+        """Whether each servo is under power, by id; without those that did not answer last."""
+        return self._powered
 
     def health(self) -> tuple[ServoHealth, ...]:
         """What every servo said last, in joint order."""
@@ -125,7 +127,13 @@ class ServoChain:
     def _read_health(self, drive: JointDrive, motor: Motor) -> StatusReply:
         registers = motor.servo.registers
         first, last = registers["torque_enable"], registers["present_temperature"]
-        reply = self.bus.read(motor.id, first.address, last.address + last.size - first.address)
+        size = last.address + last.size - first.address
+        self._powered.pop(motor.id, None)
+        try:
+            reply = self.bus.read(motor.id, first.address, size)
+        except BusLost:
+            self._powered.clear()
+            raise
 
         def value(name: str) -> int:
             register = registers[name]
@@ -133,12 +141,16 @@ class ServoChain:
             return int.from_bytes(reply.data[start : start + register.size], "little")
 
         ticks = value("present_position")
+        if ticks > motor.servo.highest_position:
+            raise CorruptPackets(motor.id, f"says that it stands at {ticks}, which it cannot")
+        powered = value("torque_enable") == 1 and value("torque_limit") > 0
+        self._powered[motor.id] = powered
         own = ticks if motor is drive.motors[0] else drive.mirrored(ticks)
         self._positions[motor.id] = ticks
         self._health[motor.id] = ServoHealth(
             id=motor.id,
             joint=drive.joint,
-            torque=value("torque_enable") == 1 and value("torque_limit") > 0,
+            torque=powered,
             position_rad=drive.angle(own),
             load_share=load_share(value("present_load")),
             voltage_v=voltage_v(value("present_voltage")),

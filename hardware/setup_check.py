@@ -51,11 +51,16 @@ def check_pair(drive: JointDrive, says: tuple[float, ...]) -> None:
         raise PairDisagreement(drive.joint, apart)
 
 
-def _check_servo(chain: ServoChain, drive: JointDrive, motor: Motor) -> None:
+def check_model(chain: ServoChain, motor: Motor) -> None:
+    """Check that a servo is of the kind that the arm file says; WrongSetting if not."""
     number = chain.value(motor, "model_number")
     if number != motor.servo.model_number:
         detail = f"is model {number}, the arm file says {motor.servo.name}"
         raise WrongSetting(motor.id, detail)
+
+
+def _check_servo(chain: ServoChain, drive: JointDrive, motor: Motor) -> None:
+    check_model(chain, motor)
     level = chain.value(motor, "status_return_level")
     if level != ALL_ANSWERS:
         raise WrongSetting(motor.id, f"status return level is {level}, needs {ALL_ANSWERS}")

@@ -225,16 +225,19 @@ class Worker:
         try:
             self._arm.check()
         except BusLost:
-            self._try(self._arm.chain.bus.reopen)
-            self._try(self._arm.check)
+            if self._try(self._arm.chain.bus.reopen):
+                self._try(self._arm.check)
         except HardwareError as error:
             self._faults.latch(error)
 
-    def _try(self, mend: Callable[[], None]) -> None:
+    def _try(self, mend: Callable[[], None]) -> bool:
+        """Whether it worked; if not, it is a fault."""
         try:
             mend()
         except HardwareError as error:
             self._faults.latch(error)
+            return False
+        return True
 
     # --- Motion -----------------------------------------------------------------------------------
     def _advance(self) -> None:

@@ -107,12 +107,15 @@ def test_a_guard_that_stood_still_went_off_and_its_late_answers_are_nobodys(
         assert laser.state == (ON if on else OFF)
 
 
-def test_a_guard_that_does_not_end_is_ended(laser: GuardedEndEffector) -> None:
+def test_a_guard_that_does_not_end_is_ended_and_another_switches_off(
+    laser: GuardedEndEffector, record: Path
+) -> None:
+    laser.switch(on=True)
     laser._guard.send_signal(signal.SIGSTOP)
     laser.close()
     assert laser._guard.returncode is not None
-    assert laser.state == UNKNOWN
-    laser.recover()
+    assert laser.state == OFF
+    assert changes(record)[-1] == (OFF, "end")
 
 
 def test_a_record_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 from hardware.end_effector import OFF, ON
 from hardware.exceptions import (
     Canceled,
+    EndEffectorFailed,
     FollowingError,
     HardwareError,
     OrderRefused,
@@ -54,7 +55,8 @@ class RecordedEndEffector:
         self.changes.append((self.accounts[-1].segment or "", self.state))
 
     def stay_on(self) -> None:
-        assert self.state == ON
+        if self.state != ON:
+            raise EndEffectorFailed("it went off")
 
     def check(self) -> None:
         pass
@@ -378,6 +380,16 @@ def test_a_servo_that_loses_its_power_in_a_dwell_is_named() -> None:
     run.bench.fault("power-cycle")
     with pytest.raises(TorqueLost):
         run.finish()
+
+
+def test_a_dwell_over_which_the_light_went_out_is_no_dwell() -> None:
+    """A worker that stood still: its guard has switched off, and the clock has gone on."""
+    run = start_run()
+    run.until("dwell", 1)
+    run.end_effector.state = OFF
+    run.bench.time.sleep(5)
+    with pytest.raises(EndEffectorFailed):
+        run.tick()
 
 
 def test_orders_for_another_model_tool_or_incomplete_are_refused() -> None:

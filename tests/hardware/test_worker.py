@@ -440,6 +440,24 @@ def test_a_stop_after_a_killed_worker_holds_and_knows_that_torque_is_on(tmp_path
     assert {packet[4] for packet in first.bench.bus.sent[sent:]} == {2, 0x83}
 
 
+def test_torque_that_was_on_before_the_worker_came_is_watched_too(tmp_path: Path) -> None:
+    scene = make_scene(tmp_path)
+    scene.bench.arm.enable_torque()
+    scene.link.at(2.0, "power-cycle")
+    scene.run(4.0)
+    assert {said.torque for said in scene.telemetry()} >= {"on", "off"}
+    assert scene.telemetry()[-1].torque == "off"
+    assert [fault.code for fault in scene.telemetry()[-1].faults] == ["torque_lost"]
+
+
+def test_a_lost_bus_is_unknown_torque(tmp_path: Path) -> None:
+    scene = make_scene(tmp_path)
+    scene.bench.arm.enable_torque()
+    scene.link.at(2.0, "unplug")
+    scene.run(4.0)
+    assert scene.telemetry()[-1].torque == "unknown"
+
+
 def test_a_second_servo_that_is_lost_is_told_too(scene: Scene) -> None:
     scene.link.at(1.0, "missing 41")
     scene.link.at(3.0, "missing 51")
