@@ -29,9 +29,6 @@ class ServoBus(Protocol):
     def retries(self) -> Mapping[int, int]:
         """Packets that had to be repeated so far, by servo id."""
 
-    def ping(self, servo_id: int) -> StatusReply:
-        """Whether the servo answers."""
-
     def read(self, servo_id: int, address: int, size: int) -> StatusReply:
         """`size` bytes of its control table from `address` on."""
 

@@ -64,11 +64,6 @@ class DynamixelBus:
         """Packets that had to be repeated so far, by servo id."""
         return self._retries
 
-    def ping(self, servo_id: int) -> StatusReply:
-        """Whether the servo answers."""
-        # The SDK's own ping goes on to read the model number; this reads it at once.
-        return self.read(servo_id, 0, 2)
-
     def read(self, servo_id: int, address: int, size: int) -> StatusReply:
         """`size` bytes of its control table from `address` on."""
 

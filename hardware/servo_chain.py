@@ -2,7 +2,6 @@
 
 import contextlib
 from collections.abc import Mapping
-from typing import Final
 
 from hardware.bus import ServoBus, StatusReply
 from hardware.clock import timestamp
@@ -12,13 +11,13 @@ from hardware.messages import ServoHealth
 from hardware.units import load_share, voltage_v
 from solver.robots.model import Array
 
-# The only registers that this package ever writes. The torque limit is not among them: after a
-# shutdown it is 0, and writing it would put the joint under power again.
-WRITTEN: Final = ("goal_position", "moving_speed", "torque_enable")
-
 
 class ServoChain:
-    """All servos of an arm on one bus, and what each said last."""
+    """All servos of an arm on one bus, and what each said last.
+
+    It writes goal position, moving speed and torque enable, and nothing else. Not the torque limit:
+    after a shutdown that is 0, and writing it would put the joint under power again.
+    """
 
     def __init__(self, arm: ArmMap, bus: ServoBus) -> None:
         self.map = arm

@@ -61,7 +61,7 @@ def arm() -> ArmMap:
 
 def test_every_servo_answers_with_its_model(bus: ServoBus, arm: ArmMap) -> None:
     for motor in arm.motors:
-        reply = bus.ping(motor.id)
+        reply = bus.read(motor.id, 0, 2)
         assert int.from_bytes(reply.data, "little") == motor.servo.model_number
         assert reply.errors == ()
 
@@ -123,4 +123,4 @@ def test_a_port_is_used_by_one_program(bus: ServoBus) -> None:
 def test_a_port_can_be_closed_and_opened_again(bus: ServoBus, arm: ArmMap) -> None:
     bus.close()
     bus.reopen()
-    assert bus.ping(arm.motors[0].id).errors == ()
+    assert bus.read(arm.motors[0].id, 0, 2).errors == ()

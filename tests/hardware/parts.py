@@ -61,9 +61,6 @@ class InProcessBus:
     device: str = "in-process"
     retries: Mapping[int, int] = field(default_factory=dict)
 
-    def ping(self, servo_id: int) -> StatusReply:
-        return self.read(servo_id, 0, 2)
-
     def read(self, servo_id: int, address: int, size: int) -> StatusReply:
         return self._ask(servo_id, READ, bytes((address, size)))
 

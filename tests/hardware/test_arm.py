@@ -74,6 +74,7 @@ def test_narrower_angle_limits_that_leave_the_joints_range_are_fine(bench: Bench
     set_register(bench, 51, "cw_angle_limit", 150)
     set_register(bench, 51, "ccw_angle_limit", 870)
     bench.arm.check()
+    assert bench.arm.torque == "off"
 
 
 @pytest.mark.parametrize(
@@ -292,4 +293,7 @@ def test_an_arm_at_its_limits_can_leave_them(seed: int) -> None:
     robot = make_bench().robot
     bench = make_bench(tuple(robot.upper.tolist()), seed=seed)
     bench.arm.enable_torque()
+    before = np.array(bench.true_joints())
     bench.arm.command(bench.arm.commanded - 0.01, TICK_S)
+    bench.time.sleep(1)
+    assert (np.array(bench.true_joints()) < before).all()
