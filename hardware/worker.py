@@ -119,6 +119,9 @@ class Worker:
                 self._catch_up(now - due)
                 due = now
             self._clock.sleep(due - now)
+            if (late := self._clock.now() - due) > SILENCE_S * self._clock.factor:
+                self._catch_up(late)
+                due += late
         if self._execution is not None:
             self._fail(WorkerEnded("the worker was told to end"))
         self._say_telemetry()

@@ -305,12 +305,14 @@ def test_a_worker_that_hangs_is_given_up_and_does_not_go_on_later(rig: Rig, plan
     assert execution["error"]["code"] in ("link_lost", "worker_lost")
     assert execution["targets"][0]["status"] == "unknown"
     rig.worker.send_signal(signal.SIGCONT)
-    wait_until(lambda: "link_lost" in rig.fault_codes(), LONG_S)
+    # Which of the two it notices first depends on where in a tick it stood still.
+    causes = {"link_lost", "end_effector_failed"}
+    wait_until(lambda: bool(causes & set(rig.fault_codes())), LONG_S)
     assert rig.laser_changes()[-1] == "off"
     # What the worker knew of it is told when it is back; failed it stays.
     execution = rig.until(location, lambda execution: "error" in execution["targets"][0])
     assert execution["status"] == "failed"
-    assert execution["targets"][0]["error"]["code"] == "link_lost"
+    assert execution["targets"][0]["error"]["code"] in causes
     assert execution["targets"][0]["target_error_m"] < MOST_ERROR_M
 
 
