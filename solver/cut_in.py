@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.approach.feasibility import retreat_from
 from solver.approach.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.methods.candidate import Candidate
 from solver.robots.model import Array, Robot, Tool
 from solver.tolerances import (
@@ -59,6 +61,29 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
     return CutIn(rows, motion, deviation)
 
 
+def retreat_rows(
+    robot: Robot, tool: Tool, thinning: Sequence[float], branch: int | None, retreats: Array
+) -> Array:
+    """Postures straight behind a thinning posture, with its orientation, on its branch.
+
+    Args:
+        robot: the arm.
+        tool: its tool.
+        thinning: the posture at the target, shape (joints,) [rad].
+        branch: the inverse kinematics branch.
+        retreats: distances behind the target, descending to 0, shape (rows,) [m].
+
+    Returns:
+        Shape (rows, joints), without turns between rows; the last row is `thinning` itself.
+    """
+    assert branch is not None
+    rows = np.empty((len(retreats), len(robot.joints)))
+    rows[-1] = thinning
+    pose = forward_kinematics(robot, tool, rows[-1])
+    retreat_from(wrist_geometry(robot, tool), pose, branch, np.ascontiguousarray(retreats), rows)
+    return rows
+
+
 def line_deviation(
     robot: Robot, tool: Tool, rows: Array, point: Sequence[float], direction: Array
 ) -> float:
@@ -103,6 +128,6 @@ def _inside(task: ApproachTask, rows: Array) -> Array:
 
 
 def _postures(task: ApproachTask, candidate: Candidate, retreats: Array) -> Array:
-    return task.postures(
-        candidate.approach_angle_rad, candidate.tool_side, candidate.branch, retreats
+    return retreat_rows(
+        task.robot, task.tool, candidate.thinning_joints, candidate.branch, retreats
     )

@@ -63,20 +63,21 @@ def _retimed(
     known = choice.branch in BRANCHES and choice.tool_side in task.tool_sides
     if not known or len(choice.thinning_joints) != len(problem.robot.joints):
         raise RetimingFailed(target.id, "is on no branch or side of this arm and tool")
+    if not np.all(np.isfinite(choice.thinning_joints)):
+        raise RetimingFailed(target.id, "has a thinning posture that is not a number")
     candidate = Candidate(
-        choice.approach_angle_rad, choice.tool_side, choice.branch, 0.0, 0, PLANNED
+        choice.approach_angle_rad,
+        choice.tool_side,
+        choice.branch,
+        choice.thinning_joints,
+        0.0,
+        0,
+        PLANNED,
     )
-    rows = task.postures(
-        choice.approach_angle_rad, choice.tool_side, choice.branch, np.asarray(task.retreats_m)
-    )
-    for name, was, now in (
-        ("standby", choice.standby_joints, rows[0]),
-        ("thinning", choice.thinning_joints, rows[-1]),
-    ):
-        if not _same(was, now):
-            raise RetimingFailed(target.id, f"has another {name} posture than it had")
     report = SolverReport(problem.options.method, 0.0, 0, PLANNED)
     cut_in = build_cut_in(task, candidate)
+    if not _same(choice.standby_joints, cut_in.path_joints[0]):
+        raise RetimingFailed(target.id, "has another standby posture than it had")
     approach = judge(
         problem, propose(problem, target, candidate, cut_in, reference, report), reference
     )

@@ -123,6 +123,21 @@ def trace(task, angle, branch, retreats, rows):
 
 
 @kernel
+def retreat_from(geometry, pose, branch, retreats, rows):
+    """Writes the postures straight behind a pose to rows, shape (len(retreats), 6).
+
+    Retreats descend to 0; the last row holds the thinning posture of the pose, shape (4, 4).
+    """
+    axes, position = pose[:3, :3], np.empty(3)
+    for n in range(len(retreats) - 2, -1, -1):
+        for i in range(3):
+            position[i] = pose[i, 3] - retreats[n] * axes[i, 2]
+        one_branch(geometry, position, axes, branch, rows[n])
+        for i in range(6):
+            rows[n, i] = rows[n + 1, i] + wrap(rows[n, i] - rows[n + 1, i])
+
+
+@kernel
 def effort(task, q):
     """Weighted joint travel from the reference to q (T's minimum effort; squared for l2)."""
     total = 0.0

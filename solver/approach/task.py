@@ -72,6 +72,11 @@ class ApproachTask:
         trace(self.for_kernels(tool_side), angle, branch, np.ascontiguousarray(retreats), rows)
         return rows
 
+    def thinning_joints(self, angle: float, tool_side: int, branch: int) -> tuple[float, ...]:
+        """The closed-form posture at the target [rad]."""
+        row = self.postures(angle, tool_side, branch, np.zeros(1))[-1]
+        return tuple(float(value) for value in row)
+
     def with_retreat(self, retreat: float) -> "ApproachTask":
         """The same task with one more row at which the cut-in has to be feasible."""
         return replace(self, retreats_m=tuple(sorted({*self.retreats_m, retreat}, reverse=True)))

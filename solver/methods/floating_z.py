@@ -24,4 +24,5 @@ def solve_floating_z(task: ApproachTask) -> Candidate | Reason:
     if not offers:
         return diagnose(task, sample_angles(n))
     cost, _, negative_side, branch, angle = min(offers)
-    return Candidate(angle, -negative_side, branch, cost, n, "best_of_samples")
+    thinning = task.thinning_joints(angle, -negative_side, branch)
+    return Candidate(angle, -negative_side, branch, thinning, cost, n, "best_of_samples")

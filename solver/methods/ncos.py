@@ -5,8 +5,6 @@ Source: S 3.3 for the idea; the programme is in `solver.nlp.formulation`.
 
 from dataclasses import replace
 
-import numpy as np
-
 from solver.approach.frame import signed_angle
 from solver.approach.task import ApproachTask
 from solver.effort import posture_effort
@@ -32,24 +30,30 @@ def solve_ncos(task: ApproachTask) -> Candidate | Reason:
         signed_angle(warm_start.angle_rad),
         warm_start.arc.tool_side,
         warm_start.arc.branch,
+        task.thinning_joints(warm_start.angle_rad, warm_start.arc.tool_side, warm_start.arc.branch),
         warm_start.effort,
         result.iterations,
         f"warm_start_after_{result.status}",
     )
     if not result.success:
         return kept
-    angle, cost = _polish(task, warm_start, result)
+    angle, thinning = _polish(task, warm_start, result)
+    cost = posture_effort(thinning, task.reference, task.joint_weights, task.options.norm)
     if cost > warm_start.effort:
         return replace(kept, status="solved_warm_start_as_good")
-    return replace(kept, approach_angle_rad=signed_angle(angle), effort=cost, status="solved")
+    return replace(
+        kept,
+        approach_angle_rad=signed_angle(angle),
+        thinning_joints=thinning,
+        effort=cost,
+        status="solved",
+    )
 
 
 def _polish(
     task: ApproachTask, warm_start: ArcOptimum, result: ProgrammeResult
-) -> tuple[float, float]:
-    """The programme's angle inside the arc, and the exact effort there."""
+) -> tuple[float, tuple[float, ...]]:
+    """The programme's angle inside the arc, and the exact thinning posture there."""
     arc = warm_start.arc
     angle = min(max(result.approach_angle_rad, arc.lower_rad), arc.upper_rad)
-    thinning = task.postures(angle, arc.tool_side, arc.branch, np.zeros(1))[-1]
-    cost = posture_effort(thinning, task.reference, task.joint_weights, task.options.norm)
-    return angle, cost
+    return angle, task.thinning_joints(angle, arc.tool_side, arc.branch)

@@ -36,6 +36,7 @@ def solve_ssas(task: ApproachTask) -> Candidate | Reason:
         signed_angle(best.angle_rad),
         best.arc.tool_side,
         best.arc.branch,
+        task.thinning_joints(best.angle_rad, best.arc.tool_side, best.arc.branch),
         best.effort,
         best.refined,
         "optimum_of_arcs",
