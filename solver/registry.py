@@ -6,7 +6,9 @@ from types import MappingProxyType
 from typing import Final
 
 from solver.approach.task import ApproachTask
+from solver.methods.analytic import solve_as
 from solver.methods.candidate import Candidate
+from solver.methods.fixed_z import solve_fixed_z
 from solver.methods.floating_z import solve_floating_z
 from solver.methods.ncos import solve_ncos
 from solver.methods.semi_analytic import solve_ssas
@@ -23,7 +25,9 @@ class Method:
 
 
 _ROWS = (
+    Method("fixed_z", "the approach along the world's x axis (T 3.4.1)", solve_fixed_z),
     Method("floating_z", "evenly spaced approach angles, all branches (T 3.4.2)", solve_floating_z),
+    Method("as", "closed form, middle of the widest feasible arc (S remarks 1, 2)", solve_as),
     Method("ssas", "closed form and the optimum over every feasible arc (S 3.2)", solve_ssas),
     Method("ncos", "nonlinear programme in CasADi, warm-started by ssas (S 3.3)", solve_ncos),
 )

@@ -18,6 +18,7 @@ REASON_CODES: Final = (
     "joint_limit",
     "standby_infeasible",
     "cut_in_infeasible",
+    "method_not_applicable",
     "solver_failed",
 )
 

@@ -70,6 +70,14 @@ CELL_SWING_COSINE: Final = 0.7
 """Cosine of the turn of a joint from cell to cell (0.8 rad) from which the cell is halved: beside a
 straight wrist joints 4 and 6 turn by half a turn in an arbitrarily short way."""
 
+CLEAR_MARGIN: Final = 0.1
+"""Margin (a difference of cosines, or metres) at both ends of a cell above which a joint is not
+looked at in each row: it would have to turn back within 5 degrees of approach angle."""
+
+ROUND_TURN_COSINE: Final = -0.6
+"""Cosine of half a joint's range below which it can be inside its limits at both ends of a cell
+and have passed what it may not in between, without turning by CELL_SWING_COSINE."""
+
 NARROWEST_CELL_RAD: Final = 1e-6
 """Cells are not halved further [rad]: a hundredth of the narrowest arc that may not be missed."""
 

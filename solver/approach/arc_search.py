@@ -14,11 +14,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.approach.packed import unpack_circle, unpack_geometry
+from solver.approach.packed import (
+    COS_HALF,
+    unpack_circle,
+    unpack_geometry,
+)
 from solver.approach.turns import (
+    BESIDE,
     CONSTRAINTS,
     JUMP,
+    REACH,
     TURN_ROWS,
+    jump_margin,
+    passes_behind,
     path_margins,
     row_margin,
     swings,
@@ -32,8 +40,10 @@ from solver.tolerances import (
     ARC_CELLS,
     ARC_END_RAD,
     CELL_SWING_COSINE,
+    CLEAR_MARGIN,
     EXTREME_ANGLE_RAD,
     NARROWEST_CELL_RAD,
+    ROUND_TURN_COSINE,
 )
 
 MOST_ARCS = 64
@@ -48,7 +58,7 @@ _ANGLES[-1] = math.pi
 _COSINES, _SINES = np.cos(_ANGLES), np.sin(_ANGLES)
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
-DEAD, FULL, CROSSED, EXTREME = 0, 1, 2, 3
+DEAD, FULL, CROSSED, EXTREME, EDGE = 0, 1, 2, 3, 4
 
 
 class ArcScratch(NamedTuple):
@@ -65,6 +75,7 @@ class ArcScratch(NamedTuple):
     single: Array
     work: Array
     work_margins: Array
+    single_path: Array
 
 
 @kernel
@@ -78,10 +89,11 @@ def arc_scratch(rows):
         np.empty((ARC_CELLS, TURN_ROWS, rows)),
         np.empty((2, ARC_CELLS, CONSTRAINTS)),
         np.empty((4, TURN_ROWS, rows)),
-        np.empty((4, CONSTRAINTS)),
+        np.empty((2, CONSTRAINTS)),
         np.empty((TURN_ROWS, 1)),
         np.empty((TURN_ROWS, rows)),
         np.empty(CONSTRAINTS),
+        np.empty((TURN_ROWS, rows)),
     )
 
 
@@ -99,16 +111,6 @@ def peak_above(before, left, right, after):
 
 
 @kernel
-def cell_state(before, left, right, after):
-    """DEAD, FULL, CROSSED or EXTREME for one constraint's values at four evenly spaced angles."""
-    if left < 0.0 and right < 0.0:
-        return DEAD if peak_above(before, left, right, after) < 0.0 else EXTREME
-    if left >= 0.0 and right >= 0.0:
-        return FULL if peak_above(-before, -left, -right, -after) <= 0.0 else EXTREME
-    return CROSSED
-
-
-@kernel
 def close_cells(task, turns, column, wrist, open_cells):
     """Closes cells in which a constraint of one row is certainly negative; returns how many stay.
 
@@ -120,7 +122,9 @@ def close_cells(task, turns, column, wrist, open_cells):
             continue
         before, left = column[(k - 1) % ARC_CELLS], column[k]
         right, after = column[(k + 1) % ARC_CELLS], column[(k + 2) % ARC_CELLS]
-        for i in range(7):
+        # Joints have a cusp at the edge of reach, of which slopes outside the cell do not tell.
+        first = REACH if enters_reach(turns, left, turns, right) else 0
+        for i in range(first, JUMP):
             a = row_margin(task, turns, left, wrist, i)
             b = row_margin(task, turns, right, wrist, i)
             if a < 0.0 and b < 0.0:
@@ -131,6 +135,13 @@ def close_cells(task, turns, column, wrist, open_cells):
                     break
         left_open += open_cells[k]
     return left_open
+
+
+@kernel
+def enters_reach(left, m, right, n):
+    """Whether a reach margin changes its sign from column m of left to column n of right."""
+    arm = (left[6 + REACH, m] < 0.0) != (right[6 + REACH, n] < 0.0)
+    return arm or (left[6 + BESIDE, m] < 0.0) != (right[6 + BESIDE, n] < 0.0)
 
 
 @kernel
@@ -209,46 +220,94 @@ def find_arcs(task, scratch, arcs):
 def branch_arcs(task, scratch, arm, wrist, open_cells, arcs, count):
     """Appends the arcs of one branch; returns the new count."""
     start = count
-    margins, rows = scratch.margins[wrist], len(task.retreats)
+    margins, paths = scratch.margins[wrist], scratch.paths
     for k in range(ARC_CELLS):
         if not open_cells[k]:
             continue
-        after = (k + 1) % ARC_CELLS
-        outer, beyond = margins[(k - 1) % ARC_CELLS], margins[(k + 2) % ARC_CELLS]
+        outer, after = paths[(k - 1) % ARC_CELLS], (k + 1) % ARC_CELLS
+        beyond = paths[(k + 2) % ARC_CELLS]
         left, right = margins[k], margins[after]
-        state = EXTREME
-        if not swings(scratch.paths[k], scratch.paths[after], rows, CELL_SWING_COSINE):
-            state, _ = path_state(outer, left, right, beyond)
+        state, _, _ = path_state(
+            task, wrist, outer, paths[k], paths[after], beyond, left, right
+        )  # fmt: skip
         low, high = _ANGLES[k], _ANGLES[k + 1]
         if state == FULL:
             count = append_arc(arcs, start, count, arm, wrist, low, high, JUMP, JUMP)
-        elif state == CROSSED:
+            continue
+        clean = state == DEAD
+        if state == CROSSED:
             clean, a, b, by_a, by_b = tighten(
-                task, scratch, arm, wrist, low, high, scratch.paths[k], scratch.paths[after],
-                left, right,
+                task, scratch, arm, wrist, 0, CONSTRAINTS, low, high,
+                paths[k], paths[after], left, right,
             )  # fmt: skip
-            if not clean:
-                count = settle(task, scratch, arm, wrist, low, high, arcs, start, count)
-            elif a < b:
+            if clean and a < b:
                 count = append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
-        elif state == EXTREME:
+        if not clean:
             count = settle(task, scratch, arm, wrist, low, high, arcs, start, count)
     return close_turn(arcs, start, count)
 
 
 @kernel
-def path_state(before, left, right, after):
-    """State of a cell from all constraints, and the constraint that makes it EXTREME."""
-    state, extreme = FULL, -1
-    for i in range(CONSTRAINTS):
-        own = cell_state(before[i], left[i], right[i], after[i])
-        if own == DEAD:
-            return DEAD, -1
-        if own == EXTREME:
-            extreme = i
-        elif own == CROSSED:
-            state = CROSSED
-    return (EXTREME, extreme) if extreme >= 0 else (state, -1)
+def path_state(task, wrist, outer, left, right, beyond, left_margins, right_margins):
+    """State of a cell from every constraint in every row.
+
+    Args:
+        task: the packed task.
+        wrist: 0 or 1.
+        outer: turns along the cut-in one cell before the cell's lower end.
+        left: the same at its lower end.
+        right: the same at its upper end.
+        beyond: the same one cell further.
+        left_margins: smallest margins over all rows at the lower end, shape (CONSTRAINTS,).
+        right_margins: the same at the upper end.
+
+    Returns:
+        The state, and for EXTREME the constraint and row that may have an extremum, or -1 where a
+        joint swings. EDGE where the arm enters its reach: joints have a cusp there.
+    """
+    rows = len(task.retreats)
+    for n in range(rows):
+        if enters_reach(left, n, right, n):
+            return EDGE, -1, 0
+    if swings(left, right, rows, CELL_SWING_COSINE):
+        return EXTREME, -1, 0
+    state, extreme, at_row = FULL, -1, 0
+    for i in range(JUMP):
+        clear = min(left_margins[i], right_margins[i])
+        # Between ends that far inside only a joint that may turn all but freely can get outside.
+        turns_round = i < REACH and task.numbers[COS_HALF + i] < ROUND_TURN_COSINE
+        if clear >= CLEAR_MARGIN and not turns_round:
+            continue
+        for n in range(rows):
+            a, b = row_margin(task, left, n, wrist, i), row_margin(task, right, n, wrist, i)
+            if (a < 0.0) != (b < 0.0):
+                state = CROSSED
+                continue
+            if a >= 0.0 and clear >= CLEAR_MARGIN:
+                if passes_behind(task, left, n, right, n, wrist, i):
+                    extreme, at_row = i, n
+                continue
+            before, after = (
+                row_margin(task, outer, n, wrist, i),
+                row_margin(task, beyond, n, wrist, i),
+            )
+            if a < 0.0:
+                if peak_above(before, a, b, after) < 0.0:
+                    return DEAD, -1, 0
+                extreme, at_row = i, n
+            elif peak_above(-before, -a, -b, -after) > 0.0 or (
+                turns_round and passes_behind(task, left, n, right, n, wrist, i)
+            ):
+                extreme, at_row = i, n
+    a, b = left_margins[JUMP], right_margins[JUMP]
+    if a < 0.0 and b < 0.0:
+        before, after = jump_margin(task, outer, wrist), jump_margin(task, beyond, wrist)
+        if peak_above(before, a, b, after) < 0.0:
+            return DEAD, -1, 0
+        extreme, at_row = JUMP, 0
+    elif (a < 0.0) != (b < 0.0):
+        state = CROSSED
+    return (EXTREME, extreme, at_row) if extreme >= 0 else (state, -1, 0)
 
 
 @kernel
@@ -281,153 +340,170 @@ def close_turn(arcs, start, count):
 
 
 @kernel
+def push(stack, top, low, high, by_low, by_high):
+    """Writes a cell, and what ends it at both sides, to a row of the stack."""
+    stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3] = low, high, by_low, by_high
+
+
+@kernel
 def settle(task, scratch, arm, wrist, low, high, arcs, start, count):
     """Appends the feasible pieces of a cell that has to be split; returns the new count."""
-    stack = np.empty((64, 2))
-    stack[0, 0], stack[0, 1] = low, high
+    stack = np.empty((64, 4))
+    push(stack, 0, low, high, JUMP, JUMP)
     top = 1
-    paths, margins, rows = scratch.cell_paths, scratch.cell_margins, len(task.retreats)
+    paths, margins = scratch.cell_paths, scratch.cell_margins
     while top > 0:
         top -= 1
-        a, b = stack[top, 0], stack[top, 1]
+        a, b, by_a, by_b = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
         width = b - a
         for m in range(4):
             angle = a + (m - 1) * width if m != 2 else b
             turns_along_path(task, angle, arm, paths[m])
-            path_margins(task, paths[m], wrist, margins[m])
+        path_margins(task, paths[1], wrist, margins[0])
+        path_margins(task, paths[2], wrist, margins[1])
+        state, i, row = path_state(
+            task, wrist, paths[0], paths[1], paths[2], paths[3], margins[0], margins[1]
+        )
         middle = (a + b) / 2
-        if swings(paths[1], paths[2], rows, CELL_SWING_COSINE):
-            if width < NARROWEST_CELL_RAD:
-                continue  # the straight wrist itself: no angle here keeps its branch
-        else:
-            state, extreme = path_state(margins[0], margins[1], margins[2], margins[3])
-            if state == DEAD:
-                continue
-            if state == EXTREME:
-                sign = 1.0 if margins[1, extreme] < 0.0 else -1.0
-                middle, value = extreme_margin(task, scratch, arm, wrist, extreme, a, b, sign)
-                if sign > 0.0 and value < 0.0:
-                    continue
-                if sign < 0.0 and value <= 0.0:
-                    middle = (a + b) / 2
-                    state, _ = sign_state(margins[1], margins[2]), 0
-            if state == FULL:
-                count = append_arc(arcs, start, count, arm, wrist, a, b, JUMP, JUMP)
-                continue
-            if state == CROSSED:
-                clean, c, d, by_c, by_d = tighten(
-                    task, scratch, arm, wrist, a, b, paths[1], paths[2], margins[1], margins[2]
-                )
-                if clean:
-                    if c < d:
-                        count = append_arc(arcs, start, count, arm, wrist, c, d, by_c, by_d)
-                    continue
-            if width < NARROWEST_CELL_RAD:
-                continue
-        if top + 2 > len(stack):
+        if state == DEAD:
             continue
-        stack[top, 0], stack[top, 1] = middle, b
-        stack[top + 1, 0], stack[top + 1, 1] = a, middle
+        if state == FULL:
+            count = append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
+            continue
+        if state in (CROSSED, EDGE):
+            first, end = (REACH, JUMP) if state == EDGE else (0, CONSTRAINTS)
+            clean, c, d, by_c, by_d = tighten(
+                task, scratch, arm, wrist, first, end, a, b,
+                paths[1], paths[2], margins[0], margins[1],
+            )  # fmt: skip
+            by_c, by_d = by_a if c == a else by_c, by_b if d == b else by_d
+            if clean and c >= d:
+                continue
+            if clean and state == CROSSED:
+                count = append_arc(arcs, start, count, arm, wrist, c, d, by_c, by_d)
+                continue
+            if clean and d - c < width:
+                push(stack, top, c, d, by_c, by_d)
+                top += 1
+                continue
+        if width < NARROWEST_CELL_RAD or top + 2 > len(stack):
+            continue  # a straight wrist, where no angle keeps its branch
+        if state == EXTREME and i >= 0:
+            sign = 1.0
+            if i != JUMP and row_margin(task, paths[1], row, wrist, i) >= 0.0:
+                sign = -1.0
+            where, value = extreme_margin(task, scratch, arm, wrist, i, row, a, b, sign)
+            if sign > 0.0 and value < 0.0:
+                continue
+            if min(where - a, b - where) > EXTREME_ANGLE_RAD:
+                middle = where
+        push(stack, top, middle, b, JUMP, by_b)
+        push(stack, top + 1, a, middle, by_a, JUMP)
         top += 2
     return count
 
 
 @kernel
-def sign_state(left, right):
-    """State by the signs at both ends alone: FULL, CROSSED, or DEAD with one negative at both."""
-    state = FULL
-    for i in range(CONSTRAINTS):
-        if left[i] < 0.0 and right[i] < 0.0:
-            return DEAD
-        if (left[i] < 0.0) != (right[i] < 0.0):
-            state = CROSSED
-    return state
-
-
-@kernel
-def constraint_at(task, scratch, angle, arm, wrist, i):
-    """One constraint's margin over the whole cut-in at one angle."""
-    turns_along_path(task, angle, arm, scratch.work)
-    path_margins(task, scratch.work, wrist, scratch.work_margins)
-    return scratch.work_margins[i]
-
-
-@kernel
-def extreme_margin(task, scratch, arm, wrist, i, low, high, sign):
+def extreme_margin(task, scratch, arm, wrist, i, row, low, high, sign):
     """Golden section for the largest (sign 1) or smallest (-1) margin; stops where it crosses 0.
 
     Returns the angle and sign times the margin there.
     """
     a, b = low, high
     x1, x2 = b - _GOLDEN * (b - a), a + _GOLDEN * (b - a)
-    f1 = sign * constraint_at(task, scratch, x1, arm, wrist, i)
-    f2 = sign * constraint_at(task, scratch, x2, arm, wrist, i)
+    f1 = sign * single_margin(task, scratch, x1, row, arm, wrist, i)
+    f2 = sign * single_margin(task, scratch, x2, row, arm, wrist, i)
     while b - a > EXTREME_ANGLE_RAD and max(f1, f2) <= 0.0:
         if f1 >= f2:
             b, x2, f2 = x2, x1, f1
             x1 = b - _GOLDEN * (b - a)
-            f1 = sign * constraint_at(task, scratch, x1, arm, wrist, i)
+            f1 = sign * single_margin(task, scratch, x1, row, arm, wrist, i)
         else:
             a, x1, f1 = x1, x2, f2
             x2 = a + _GOLDEN * (b - a)
-            f2 = sign * constraint_at(task, scratch, x2, arm, wrist, i)
+            f2 = sign * single_margin(task, scratch, x2, row, arm, wrist, i)
     return (x1, f1) if f1 >= f2 else (x2, f2)
 
 
 @kernel
-def tighten(task, scratch, arm, wrist, low, high, left_path, right_path, left, right):
-    """The feasible part of a cell in which every constraint has one root at most.
+def tighten(task, scratch, arm, wrist, first, end, low, high, left_path, right_path, left, right):
+    """The feasible part of a cell in which every constraint has one root at most in every row.
+
+    Only constraints from `first` to before `end` are looked at.
 
     Returns whether that held, the part's ends (the first is not the lower where there is none) and
     the constraints that end it.
     """
-    a, by_a, clean = pull_in(task, scratch, arm, wrist, low, high, left_path, left, right)
+    a, by_a, clean = pull_in(
+        task, scratch, arm, wrist, first, end, low, high, left_path, right_path, left, right
+    )
     if not clean:
         return False, low, high, JUMP, JUMP
     if a >= high:
         return True, high, low, JUMP, JUMP
-    b, by_b, clean = pull_in(task, scratch, arm, wrist, high, low, right_path, right, left)
+    b, by_b, clean = pull_in(
+        task, scratch, arm, wrist, first, end, high, low, right_path, left_path, right, left
+    )
     return clean, a, b, by_a, by_b
 
 
 @kernel
-def pull_in(task, scratch, arm, wrist, start, end, path, margins, at_end):
+def pull_in(
+    task, scratch, arm, wrist, first, last, start, end, at_start, at_end, start_margins, end_margins
+):
     """Moves from one end of a cell inwards until no constraint that is met at the other is broken.
 
     Returns the angle, `end` where the cell has no feasible part, the constraint that was met last,
     and whether the cell behaves: constraints met at both ends are met at the angle.
     """
     angle, by = start, JUMP
-    now, turns = margins, path
+    turns, margins = at_start, start_margins
     inwards = 1.0 if end > start else -1.0
-    for _ in range(4 * CONSTRAINTS):
-        worst, least = -1, 0.0
-        for i in range(CONSTRAINTS):
-            if now[i] < least:
-                if at_end[i] < 0.0:
-                    return end, i, True
-                if margins[i] >= 0.0:
-                    return end, i, False
-                worst, least = i, now[i]
+    for _ in range(8 * CONSTRAINTS):
+        worst, row, least = worst_constraint(task, turns, wrist, first, last, margins)
         if worst < 0:
             return angle, by, True
-        found = root(task, scratch, arm, wrist, worst, angle, end, turns)
-        if found == angle:
-            found = angle + inwards * ARC_END_RAD
-        angle, by = found, worst
+        if worst == JUMP:
+            at_other, at_this = end_margins[JUMP], start_margins[JUMP]
+        else:
+            at_other = row_margin(task, at_end, row, wrist, worst)
+            at_this = row_margin(task, at_start, row, wrist, worst)
+        if at_other < 0.0:
+            return end, worst, True
+        if at_this >= 0.0:
+            return end, worst, False
+        found = root(task, scratch, arm, wrist, worst, row, angle, least, end, at_other)
+        angle, by = found if found != angle else angle + inwards * ARC_END_RAD, worst
         if (end - angle) * inwards <= 0.0:
             return end, by, True
         turns_along_path(task, angle, arm, scratch.work)
         path_margins(task, scratch.work, wrist, scratch.work_margins)
-        now, turns = scratch.work_margins, scratch.work
+        turns, margins = scratch.work, scratch.work_margins
     return end, by, False
+
+
+@kernel
+def worst_constraint(task, turns, wrist, first, last, margins):
+    """The constraint with the smallest margin below zero, its row and its margin; -1 if none is."""
+    worst, row, least = -1, 0, 0.0
+    for i in range(first, last):
+        if margins[i] < least:
+            worst, least = i, margins[i]
+    if 0 <= worst < JUMP:
+        least = math.inf
+        for n in range(len(task.retreats)):
+            value = row_margin(task, turns, n, wrist, worst)
+            if value < least:
+                row, least = n, value
+    return worst, row, least
 
 
 @kernel
 def single_margin(task, scratch, angle, row, arm, wrist, i):
     """One constraint's margin at one angle in one row of the cut-in; the jump is the path's."""
     if i == JUMP:
-        return constraint_at(task, scratch, angle, arm, wrist, i)
+        turns_along_path(task, angle, arm, scratch.single_path)
+        return jump_margin(task, scratch.single_path, wrist)
     g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
     shoulder, elbow = arm // 2, 1.0 - 2.0 * (arm % 2)
     retreat = task.retreats[row]
@@ -438,35 +514,13 @@ def single_margin(task, scratch, angle, row, arm, wrist, i):
 
 
 @kernel
-def worst_row(task, turns, wrist, i):
-    """The row of a cut-in in which a constraint is smallest, and its margin."""
-    row, least = 0, math.inf
-    for n in range(len(task.retreats)):
-        value = row_margin(task, turns, n, wrist, i)
-        if value < least:
-            row, least = n, value
-    return row, least
+def root(task, scratch, arm, wrist, i, row, broken, f_broken, met, f_met):
+    """The angle next to the root of a constraint's row, on the side where it is met.
 
-
-@kernel
-def root(task, scratch, arm, wrist, i, broken, met, turns):
-    """The angle next to the root of a constraint, on the side where it is met.
-
-    The root is that of the row that is worst where it is broken. Chandrupatla's method: inverse
-    quadratic interpolation where that is safe, bisection elsewhere.
+    Chandrupatla's method: inverse quadratic interpolation where that is safe, else bisection.
     """
-    row, f_broken = 0, 0.0
-    if i == JUMP:
-        f_broken = constraint_at(task, scratch, broken, arm, wrist, i)
-    else:
-        row, f_broken = worst_row(task, turns, wrist, i)
-    x1, f1 = broken, f_broken
-    x2 = met
-    f2 = single_margin(task, scratch, met, row, arm, wrist, i)
-    if f2 < 0.0 or f1 >= 0.0:
-        return met if f2 >= 0.0 and f1 >= 0.0 and broken == met else broken
-    t = f1 / (f1 - f2)
-    lost, kept = x1, x2
+    x1, f1, x2, f2 = broken, f_broken, met, f_met
+    kept, t = met, f1 / (f1 - f2)
     for _ in range(100):
         x3 = x1 + t * (x2 - x1)
         f3 = single_margin(task, scratch, x3, row, arm, wrist, i)
@@ -476,11 +530,8 @@ def root(task, scratch, arm, wrist, i, broken, met, turns):
             x0, f0 = x2, f2
             x2, f2 = x1, f1
         x1, f1 = x3, f3
-        if f1 >= 0.0:
-            kept, lost = x1, x2
-        else:
-            kept, lost = x2, x1
-        width = abs(kept - lost)
+        kept = x1 if f1 >= 0.0 else x2
+        width = abs(x1 - x2)
         if width <= ARC_END_RAD:
             break
         xi, phi = (x1 - x2) / (x0 - x2), (f1 - f2) / (f0 - f2)

@@ -61,14 +61,19 @@ def sample_angles(n: int) -> Array:
 def sample_task(task: ApproachTask, tool_side: int, n: int) -> tuple[Array, Array, Array]:
     """Angles, shape (n,), and margins and efforts of all branches there, shape (8, n)."""
     angles = sample_angles(n)
-    margins, efforts = np.empty((BRANCHES, n)), np.empty((BRANCHES, n))
+    return angles, *sample_angles_of(task, tool_side, angles)
+
+
+def sample_angles_of(task: ApproachTask, tool_side: int, angles: Array) -> tuple[Array, Array]:
+    """Margins and efforts of all branches at angles of shape (n,), shape (8, n)."""
+    margins, efforts = np.empty((BRANCHES, len(angles))), np.empty((BRANCHES, len(angles)))
     sample(task.for_kernels(tool_side), angles, margins, efforts)
-    return angles, margins, efforts
+    return margins, efforts
 
 
 def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
     """Feasible arcs of every branch and tool side of a task."""
-    limits = (*task.robot.joint_names, "reach", "wrist_jump")
+    limits = (*task.robot.joint_names, "reach", "reach", "wrist_jump")
     arcs: list[Arc] = []
     for side in task.tool_sides:
         for branch, low, high, by_low, by_high in arcs_of(task.packed(side)):

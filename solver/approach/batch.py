@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, arc_scratch, find_arcs
 from solver.approach.frame import approach_frames
 from solver.approach.packed import PackedTask, jump_cosines, pack
-from solver.approach.search import effort_scratch, least_effort, nearest_turns
-from solver.approach.turns import TURN_ROWS, joints_of_turns, turns_along_path
+from solver.approach.search import effort_scratch, least_effort, path_joints
+from solver.approach.turns import TURN_ROWS, turns_along_path
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Problem
@@ -89,7 +89,7 @@ def closed_form_optima(
 @kernel
 def _optimise(numbers, retreats, cos_steps, angles, sides, branches, efforts, paths, refined):
     rows = len(retreats)
-    scratch, samples, cell = arc_scratch(rows), effort_scratch(), effort_scratch()
+    scratch, samples, cell = arc_scratch(rows), effort_scratch(rows), effort_scratch(rows)
     arcs = np.empty((MOST_ARCS, ARC_COLUMNS))
     turns, joints = np.empty((TURN_ROWS, rows)), np.empty((6, rows))
     for k in range(numbers.shape[1]):
@@ -110,22 +110,5 @@ def _optimise(numbers, retreats, cos_steps, angles, sides, branches, efforts, pa
             paths[k] = math.nan
             continue
         task = PackedTask(numbers[chosen, k], retreats, cos_steps)
-        path_joints(task, angle, branch, turns, joints, paths[k])
-
-
-@kernel
-def path_joints(task, angle, branch, turns, joints, rows):
-    """Writes a cut-in to rows, shape (len(retreats), 6), without turns between rows.
-
-    `turns` and `joints` are working memory, shape (TURN_ROWS, rows) and (6, rows).
-    """
-    count = len(task.retreats)
-    turns_along_path(task, angle, branch // 2, turns)
-    joints_of_turns(task, turns, count, branch % 2, joints)
-    nearest_turns(task, joints[:, count - 1 :], 1)
-    for i in range(6):
-        rows[count - 1, i] = joints[i, count - 1]
-        for n in range(count - 2, -1, -1):
-            change = joints[i, n] - rows[n + 1, i]
-            change -= 2 * math.pi * math.floor((change + math.pi) / (2 * math.pi))
-            rows[n, i] = rows[n + 1, i] + change
+        turns_along_path(task, angle, branch // 2, turns)
+        path_joints(task, turns, branch % 2, joints, paths[k])

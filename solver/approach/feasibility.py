@@ -99,7 +99,8 @@ def thinning(task, angle, branch, q):
 def trace(task, angle, branch, retreats, rows):
     """Writes the cut-in to rows, shape (len(retreats), 6), without turns between rows.
 
-    Retreats descend to 0, the thinning posture.
+    Retreats descend to 0, the thinning posture. A joint of more than one turn is on the turn
+    nearest to the reference on which the whole cut-in is inside its limits.
 
     Returns the margin: the smallest of the joints' [rad], the reach's [m] and, as a share, what is
     left below the joint rate that counts as a wrist jump.
@@ -107,7 +108,7 @@ def trace(task, angle, branch, retreats, rows):
     axes = np.empty((3, 3))
     tool_axes(task, angle, axes)
     last = len(retreats) - 1
-    margin = thinning(task, angle, branch, rows[last])
+    margin = posture(task, axes, 0.0, branch, rows[last])
     for n in range(last - 1, -1, -1):
         q = rows[n]
         margin = min(margin, posture(task, axes, retreats[n], branch, q))
@@ -116,10 +117,27 @@ def trace(task, angle, branch, retreats, rows):
             change = wrap(q[i] - rows[n + 1, i])
             q[i] = rows[n + 1, i] + change
             step = max(step, abs(change))
-        inside, _ = limit_margin(task, q)
         allowed = JOINT_RATE_RAD_M * (retreats[n] - retreats[n + 1])
-        margin = min(margin, inside, 1.0 - step / allowed)
+        margin = min(margin, 1.0 - step / allowed)
+    choose_turns(task.lower, task.upper, task.reference, rows)
+    for n in range(last + 1):
+        margin = min(margin, limit_margin(task, rows[n])[0])
     return margin
+
+
+@kernel
+def choose_turns(lower, upper, reference, rows):
+    """Moves joints of more than one turn by whole turns, as `trace` says; rows end at thinning."""
+    for i in range(6):
+        if upper[i] - lower[i] <= 2 * math.pi:
+            continue
+        low, high = rows[:, i].min(), rows[:, i].max()
+        chosen, nearest = 0.0, math.inf
+        for turn in (0.0, -2 * math.pi, 2 * math.pi):
+            away = abs(rows[-1, i] + turn - reference[i])
+            if low + turn >= lower[i] and high + turn <= upper[i] and away < nearest:
+                chosen, nearest = turn, away
+        rows[:, i] += chosen
 
 
 @kernel
@@ -154,10 +172,9 @@ def evaluate(task, angle, branch, rows):
     Where the thinning posture alone is far from feasible its margin is returned.
     """
     margin = thinning(task, angle, branch, rows[-1])
-    cost = effort(task, rows[-1])
-    if margin < -NEAR_FEASIBLE_RAD:
-        return margin, cost
-    return trace(task, angle, branch, task.retreats, rows), cost
+    if margin >= -NEAR_FEASIBLE_RAD:
+        margin = trace(task, angle, branch, task.retreats, rows)
+    return margin, effort(task, rows[-1])
 
 
 @kernel

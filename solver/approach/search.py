@@ -11,9 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.approach.feasibility import choose_turns
 from solver.approach.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS
-from solver.approach.turns import TURN_ROWS, joints_of_turns, turns_at_angles
+from solver.approach.turns import (
+    TURN_ROWS,
+    joints_of_turns,
+    turns_along_path,
+    turns_at_angles,
+)
 from solver.compiled import kernel
+from solver.kinematics.spherical_wrist import wrap
 from solver.robots.model import Array
 from solver.tolerances import (
     ANGLE_STEP_RAD,
@@ -37,35 +44,54 @@ class EffortScratch(NamedTuple):
     turns: Array
     joints: Array
     efforts: Array
+    path_turns: Array
+    path_joints: Array
+    path: Array
 
 
 @kernel
-def effort_scratch():
-    """Working memory for arcs of up to one turn."""
+def effort_scratch(rows):
+    """Working memory for arcs of up to one turn and cut-ins of that many rows."""
     n = _MOST
     return EffortScratch(
         np.empty(n), np.empty(n), np.empty(n), np.empty((TURN_ROWS, n)), np.empty((6, n)),
-        np.empty(n),
+        np.empty(n), np.empty((TURN_ROWS, rows)), np.empty((6, rows)), np.empty((rows, 6)),
     )  # fmt: skip
 
 
 @kernel
-def nearest_turns(task, joints, count):
-    """Moves joints that can turn further than once to the turn nearest to the reference."""
-    numbers = task.numbers
+def choose_turns_of_samples(task, scratch, branch, count):
+    """Moves joints of more than one turn to the turn that `choose_turns` takes for their cut-in."""
+    widest, rows = 0.0, len(task.retreats)
     for i in range(6):
-        if numbers[UPPER + i] - numbers[LOWER + i] <= 2 * math.pi:
-            continue
-        for n in range(count):
-            q = joints[i, n]
-            for turn in (-2 * math.pi, 2 * math.pi):
-                other = joints[i, n] + turn
-                inside = numbers[LOWER + i] <= other <= numbers[UPPER + i]
-                if inside and abs(other - task.numbers[REFERENCE + i]) < abs(
-                    q - task.numbers[REFERENCE + i]
-                ):
-                    q = other
-            joints[i, n] = q
+        widest = max(widest, task.numbers[UPPER + i] - task.numbers[LOWER + i])
+    if widest <= 2 * math.pi:
+        return
+    for n in range(count):
+        turns_along_path(task, scratch.angles[n], branch // 2, scratch.path_turns)
+        path_joints(task, scratch.path_turns, branch % 2, scratch.path_joints, scratch.path)
+        for i in range(6):
+            scratch.joints[i, n] = scratch.path[rows - 1, i]
+
+
+@kernel
+def path_joints(task, turns, wrist, joints, rows):
+    """Writes a cut-in to rows, shape (len(retreats), 6), without turns between rows.
+
+    `turns` are those along it; `joints` is working memory, shape (6, len(retreats)).
+    """
+    numbers, count = task.numbers, len(task.retreats)
+    joints_of_turns(task, turns, count, wrist, joints)
+    for i in range(6):
+        rows[count - 1, i] = joints[i, count - 1]
+        for n in range(count - 2, -1, -1):
+            rows[n, i] = rows[n + 1, i] + wrap(joints[i, n] - rows[n + 1, i])
+    choose_turns(
+        numbers[LOWER : LOWER + 6],
+        numbers[UPPER : UPPER + 6],
+        numbers[REFERENCE : REFERENCE + 6],
+        rows,
+    )
 
 
 @kernel
@@ -76,7 +102,7 @@ def sample_effort(task, scratch, branch, count):
         scratch.sines[n] = math.sin(scratch.angles[n])
     turns_at_angles(task, scratch.cosines, scratch.sines, count, 0.0, branch // 2, scratch.turns)
     joints_of_turns(task, scratch.turns, count, branch % 2, scratch.joints)
-    nearest_turns(task, scratch.joints, count)
+    choose_turns_of_samples(task, scratch, branch, count)
     squared = task.numbers[SQUARED] > 0.0
     for n in range(count):
         scratch.efforts[n] = 0.0
@@ -123,7 +149,8 @@ def least_in_cell(task, joints, k, count):
 @kernel
 def optimum_on_arc(task, branch, low, high, best):
     """The same as `least_effort`, with working memory of its own."""
-    return least_effort(task, effort_scratch(), effort_scratch(), branch, low, high, best)
+    rows = len(task.retreats)
+    return least_effort(task, effort_scratch(rows), effort_scratch(rows), branch, low, high, best)
 
 
 @kernel

@@ -1,8 +1,8 @@
 """Kernels: cosines and sines of all joints for many angles or retreats at once, and their margins.
 
 Rows of a `turns` array, shape (TURN_ROWS, n): cosine and sine of theta1, 2, 3, of theta4, 5, 6 with
-sin(theta5) >= 0 (wrist 0; the other wrist mirrors them), and the reach margin [m]. Written this way
-round so that loops over n are vectorised: 15 ns a posture instead of 150.
+sin(theta5) >= 0 (wrist 0; the other wrist mirrors them), and both reach margins [m]. Written this
+way round so that loops over n are vectorised: 15 ns a posture instead of 150.
 """
 
 import math
@@ -20,11 +20,13 @@ from solver.kinematics.arctangent import atan2
 from solver.kinematics.spherical_wrist import arm_turns, elbow_turns, wrist_turns
 from solver.tolerances import SINGULAR_WRIST
 
-TURN_ROWS = 13
+TURN_ROWS = 14
 REACH = 6
-JUMP = 7
-CONSTRAINTS = 8
-"""Margins of one branch: six joints (cosine form), the reach [m], the wrist jump (cosine form)."""
+BESIDE = 7
+JUMP = 8
+CONSTRAINTS = 9
+"""Margins of one branch: six joints (cosine form), the reach [m], the shoulder's offset beside the
+waist's axis [m], the wrist jump (cosine form)."""
 
 
 @inlined
@@ -37,7 +39,7 @@ def write_turns(g, circle, cos, sin, retreat, shoulder, elbow, turns, n):
     cx = place[0] - g.tool_length * z[0]
     cy = place[1] - g.tool_length * z[1]
     cz = place[2] - g.tool_length * z[2]
-    cos1, sin1, r, s, cos_g, sin_g, inverse2, reach = arm_turns(g, cx, cy, cz, shoulder)
+    cos1, sin1, r, s, cos_g, sin_g, inverse2, reach, beside = arm_turns(g, cx, cy, cz, shoulder)
     sin_g = sin_g * elbow
     cos2, sin2, cos3, sin3, cos23, sin23 = elbow_turns(g, r, s, cos_g, sin_g, inverse2)
     r13, r23, cos5, r31, r32 = wrist_turns(g, cos1, sin1, cos23, sin23, x, y, z)
@@ -49,7 +51,7 @@ def write_turns(g, circle, cos, sin, retreat, shoulder, elbow, turns, n):
     turns[6, n], turns[7, n] = g.sign5 * r13 * inverse5, g.sign5 * r23 * inverse5
     turns[8, n], turns[9, n] = cos5, sin5
     turns[10, n], turns[11, n] = g.sign4 * r31 * inverse5, -g.sign4 * r32 * inverse5
-    turns[12, n] = reach
+    turns[12, n], turns[13, n] = reach, beside
 
 
 @kernel
@@ -89,8 +91,8 @@ def turn_margin(task, turns, n, wrist, i):
 
 @kernel
 def row_margin(task, turns, n, wrist, i):
-    """Margin of constraint i (a joint or REACH) in column n."""
-    return turns[12, n] if i == REACH else turn_margin(task, turns, n, wrist, i)
+    """Margin of constraint i (a joint, REACH or BESIDE) in column n."""
+    return turns[6 + i, n] if i >= REACH else turn_margin(task, turns, n, wrist, i)
 
 
 @kernel
@@ -104,20 +106,51 @@ def path_margins(task, turns, wrist, margins):
         for n in range(rows):
             least = min(least, cos * turns[2 * i, n] + sin * turns[2 * i + 1, n])
         margins[i] = least - task.numbers[COS_HALF + i]
+    for i in (REACH, BESIDE):
+        least = math.inf
+        for n in range(rows):
+            least = min(least, turns[6 + i, n])
+        margins[i] = least
+    margins[JUMP] = jump_margin(task, turns, wrist)
+
+
+@kernel
+def jump_margin(task, turns, wrist):
+    """Smallest margin of the turns from row to row, as a difference of cosines.
+
+    A joint that is inside its limits in two rows, and outside on the short way between them, has
+    jumped as well.
+    """
     least = math.inf
-    for n in range(rows):
-        least = min(least, turns[12, n])
-    margins[REACH] = least
-    least = math.inf
-    for n in range(rows - 1):
+    for n in range(len(task.retreats) - 1):
         allowed = task.cos_steps[n]
         for i in range(6):
-            change = (
-                turns[2 * i, n] * turns[2 * i, n + 1]
-                + turns[2 * i + 1, n] * turns[2 * i + 1, n + 1]
-            )
-            least = min(least, change - allowed)
-    margins[JUMP] = least
+            cosines = turns[2 * i, n] * turns[2 * i, n + 1]
+            sines = turns[2 * i + 1, n] * turns[2 * i + 1, n + 1]
+            least = min(least, cosines + sines - allowed)
+            half = task.numbers[COS_HALF + i]
+            may_cross = half < 0.0 and allowed < 2 * half * half - 1.0
+            if may_cross and passes_behind(task, turns, n, turns, n + 1, wrist, i):
+                least = min(least, -1.0)
+    return least
+
+
+@kernel
+def passes_behind(task, left, m, right, n, wrist, i):
+    """Whether a joint passes what it may not reach on the short way from column m to column n.
+
+    It does where it is on both sides of the direction opposite to the middle of its limits, and
+    nearer to that than to the middle.
+    """
+    cos = wrist_sign(wrist, i, True)
+    sin = wrist_sign(wrist, i, False)
+    middle_cos, middle_sin = task.numbers[COS_MIDDLE + i], task.numbers[SIN_MIDDLE + i]
+    ca, sa = cos * left[2 * i, m], sin * left[2 * i + 1, m]
+    cb, sb = cos * right[2 * i, n], sin * right[2 * i + 1, n]
+    side_a, side_b = sa * middle_cos - ca * middle_sin, sb * middle_cos - cb * middle_sin
+    ahead_a, ahead_b = ca * middle_cos + sa * middle_sin, cb * middle_cos + sb * middle_sin
+    free = task.numbers[COS_HALF + i] <= -1.0
+    return not free and (side_a < 0.0) != (side_b < 0.0) and ahead_a < 0.0 and ahead_b < 0.0
 
 
 @kernel

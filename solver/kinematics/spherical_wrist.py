@@ -162,7 +162,8 @@ def arm_turns(g, cx, cy, cz, shoulder):
     """The arm's angles but for the elbow's sign, as cosines and sines, for a wrist centre.
 
     Returns cos1, sin1, r, s, cos g, |sin g|, 1 / (distance of the wrist centre times the length of
-    the stretched or folded arm towards it) [1/m2], and the reach margin [m].
+    the stretched or folded arm towards it) [1/m2], and the reach margins [m]: of the two links, and
+    of the shoulder's offset beside the waist's axis, infinite where there is none.
     """
     rho2 = cx * cx + cy * cy
     x = math.sqrt(max(rho2 - g.shoulder * g.shoulder, 0.0))
@@ -177,14 +178,14 @@ def arm_turns(g, cx, cy, cz, shoulder):
     d2 = r * r + s * s
     distance = math.sqrt(d2)
     margin = min(g.a2 + g.l3 - distance, distance - abs(g.a2 - g.l3))
-    margin = min(margin, math.sqrt(rho2) - abs(g.shoulder))
+    beside = math.sqrt(rho2) - abs(g.shoulder) if g.shoulder != 0.0 else math.inf
     cosine = (d2 - g.a2 * g.a2 - g.l3 * g.l3) / (2 * g.a2 * g.l3)
     cos_g = min(max(cosine, -1.0), 1.0)
     sin_g = math.sqrt((1.0 - cos_g) * (1.0 + cos_g))
     length2 = d2
     if cosine != cos_g:
         length2 = distance * abs(g.a2 + g.l3 * cos_g)
-    return cos1, sin1, r, s, cos_g, sin_g, 1.0 / max(length2, TINY_M2), margin
+    return cos1, sin1, r, s, cos_g, sin_g, 1.0 / max(length2, TINY_M2), margin, beside
 
 
 @inlined
@@ -242,7 +243,7 @@ def pose_branch(g, place, x_axis, y_axis, z_axis, branch, q):
     cx = place[0] - g.tool_length * z_axis[0]
     cy = place[1] - g.tool_length * z_axis[1]
     cz = place[2] - g.tool_length * z_axis[2]
-    cos1, sin1, r, s, cos_g, sin_g, inverse2, margin = arm_turns(g, cx, cy, cz, branch // 4)
+    cos1, sin1, r, s, cos_g, sin_g, inverse2, reach, beside = arm_turns(g, cx, cy, cz, branch // 4)
     if branch // 2 % 2 == 1:
         sin_g = -sin_g
     cos2, sin2, cos3, sin3, cos23, sin23 = elbow_turns(g, r, s, cos_g, sin_g, inverse2)
@@ -251,7 +252,7 @@ def pose_branch(g, place, x_axis, y_axis, z_axis, branch, q):
     theta4, theta5, theta6, flat = wrist_angles(g, *turns, first)
     theta1, theta2, theta3 = atan2(sin1, cos1), atan2(sin2, cos2), atan2(sin3, cos3)
     _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6, branch % 2 == 1 and not flat)
-    return margin
+    return min(reach, beside)
 
 
 @kernel
@@ -277,11 +278,13 @@ def all_branches(g, poses, joints, margins, singular):
         cy = pose[1, 3] - g.tool_length * z_axis[1]
         cz = pose[2, 3] - g.tool_length * z_axis[2]
         for shoulder in range(2):
-            cos1, sin1, r, s, cos_g, sin_g, inverse2, margin = arm_turns(g, cx, cy, cz, shoulder)
+            cos1, sin1, r, s, cos_g, sin_g, inverse2, reach, beside = arm_turns(
+                g, cx, cy, cz, shoulder
+            )
             theta1 = atan2(sin1, cos1)
             for elbow in range(2):
                 arm = 2 * shoulder + elbow
-                margins[n, arm] = margin
+                margins[n, arm] = min(reach, beside)
                 turns = elbow_turns(g, r, s, cos_g, sin_g if elbow == 0 else -sin_g, inverse2)
                 cos2, sin2, cos3, sin3, cos23, sin23 = turns
                 theta2, theta3 = atan2(sin2, cos2), atan2(sin3, cos3)
