@@ -112,7 +112,7 @@ SQP_CURVATURE: Final = 1e-3
 """Least curvature of the reduced Hessian, whose negative ones are mirrored: the l1 norm has none of
 its own, and a step needs a length."""
 
-SQP_SLACK_CURVATURE: Final = 1e-6
+SQP_SLACK_CURVATURE: Final = 1e-4
 """Curvature given to the slacks of the l1 norm, whose cost is linear; far below any weight, and
 without effect where the step ends at zero."""
 
@@ -121,6 +121,9 @@ SQP_DECREASE: Final = 1e-4
 
 SQP_HALVINGS: Final = 20
 """How often a step is halved before the line search gives up."""
+
+SQP_CORRECTIONS: Final = 4
+"""Second-order corrections of a step, each a step back onto the equations, before it is halved."""
 
 SQP_PENALTY: Final = 2.0
 """The merit function's price of an infeasibility, in multiples of the largest multiplier; above one
@@ -133,8 +136,8 @@ SQP_RANK: Final = 1e-9
 """Smallest diagonal of the factorised equations, which are of size one, above which they are
 independent; below it the arm is at a singular posture."""
 
-SQP_RANGE_PRICE: Final = 1e3
-"""Price of leaving a part of the linearised equations unsolved where limits forbid to solve all."""
+SQP_DAMPING: Final = 1e-6
+"""Damping of a step that only repairs the equations: it has to be the shortest of several."""
 
 RELAXED_SWINGS: Final = 6
 """Directions in which the tool leans by its whole tolerance where a relaxed programme starts."""
@@ -154,8 +157,15 @@ RELAXED_ROUNDS: Final = 4
 QP_TOLERANCE: Final = 1e-10
 """Tolerance of the quadratic programmes, below that of the programme they are part of."""
 
-QP_ITERATIONS: Final = 20_000
-"""Iteration limit of OSQP, a first-order method; the others take a few dozen."""
+OSQP_TOLERANCE: Final = 1e-6
+"""The same before polishing, for OSQP: a first-order method that stops making progress below;
+polishing then takes its active set and solves for it exactly."""
+
+OSQP_STEP: Final = 1.0
+"""OSQP's first step size, ten times its default: limits are closer than costs are steep here."""
+
+OSQP_ITERATIONS: Final = 20_000
+"""Iteration limit of OSQP; the other two take a few dozen of their own."""
 
 EXACT_ZERO: Final = 1e-15
 """A cosine or sine of a link twist below this is zero: a right angle's cosine comes as 6e-17 and

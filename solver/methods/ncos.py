@@ -77,9 +77,7 @@ def solve_on_arc(
         strike_m=0.0,
         swing_rad=np.zeros(3),
     )
-    shape = replace(
-        shape_of(task, coupled=next_thinning is not None), strike=False, tilt=False
-    )
+    shape = replace(shape_of(task, coupled=next_thinning is not None), strike=False, tilt=False)
     programme = build_programme(task.robot, shape)
     instance = make_instance(task, programme, start, next_thinning)
     return solve_instance(task.robot, instance, task.options)

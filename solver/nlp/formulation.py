@@ -5,8 +5,8 @@ Variables    q_0, q_1   thinning and standby posture             (n each)
              phi        approach angle                           (1)
              sigma      share of the strike zone                 (1), 0 to 1, `Shape.strike`
              eta        swing, shares of the tolerance           (2), `Shape.tilt`
-             t          travel of each joint                     (n), l1 only: t >= |q_0 - reference|
-             t'         travel to the next target                (n), l1 and `Shape.coupled` only
+             t          travel of each joint                     (n), l1: t >= |q_0 - reference|
+             t'         travel to the next target                (n), l1 and `Shape.coupled`
 Parameters   p, y, u, v   target, tool y axis, approach direction at 0 and at a quarter turn
              reference, next thinning posture, weights, retreat of each posture, tool length,
              strike zone, half-angle tangent of the tilt tolerance
@@ -129,7 +129,7 @@ def build_programme(robot: Robot, shape: Shape) -> Programme:
 
     travels = [(0, reference)] + ([(1, following)] if shape.coupled else [])
     kinematic = sum(part.numel() for part in variables)
-    cost, slack_of = ca.SX(0.0), []
+    cost, slack_of = ca.SX(0.0), list[int]()
     for k, other in travels:
         change = q[k] - other
         if shape.norm == "l1":
@@ -141,10 +141,8 @@ def build_programme(robot: Robot, shape: Shape) -> Programme:
         else:
             cost = cost + ca.dot(weights, change**2)
 
-    parameters = (
-        (position, y_axis, outward, sideways, reference, following)
-        + (weights, retreats, tool_length, zone, half_tangent)
-    )  # fmt: skip
+    parameters = [position, y_axis, outward, sideways, reference, following, weights, retreats]
+    parameters += [tool_length, zone, half_tangent]
     nlp = {
         "x": ca.vertcat(*variables),
         "p": ca.vertcat(*parameters),
@@ -201,11 +199,15 @@ def turned(vector: Any, gibbs: Any) -> Any:
 
 
 def axes_error(turn: Any, wanted: Any) -> Any:
-    """Half the sum of cross products of like axes: the small rotation between two frames (3)."""
-    error = ca.SX.zeros(3)
+    """The rotation between two frames, 2 tan(angle / 2) along its axis (3).
+
+    The sum of the cross products of like axes alone, 2 sin(angle), is zero at half a turn too.
+    """
+    across, along = ca.SX.zeros(3), ca.SX(1.0)
     for i in range(3):
-        error = error + ca.cross(turn[:, i], wanted[:, i]) / 2
-    return error
+        across = across + ca.cross(turn[:, i], wanted[:, i])
+        along = along + ca.dot(turn[:, i], wanted[:, i])
+    return 2 * across / along
 
 
 def _twist(alpha: float) -> tuple[float, float]:

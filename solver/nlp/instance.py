@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solver.approach.relaxation import Placement, shortened
 from solver.approach.task import ApproachTask
@@ -59,7 +60,7 @@ class Instance:
     slack_references: Array
 
     def inside(self, x: Array) -> Array:
-        """x with bounds and inequalities kept: clipped, every slack at the travel it bounds."""
+        """The variables clipped to bounds and inequalities, every slack at the travel it bounds."""
         inside = np.clip(x, self.lower, self.upper)
         programme = self.programme
         if programme.shape.tilt:
@@ -118,9 +119,9 @@ def make_instance(
     following = np.zeros(n) if next_thinning is None else np.asarray(next_thinning, dtype=float)
     inset = NLP_LIMIT_INSET if shape.strike or shape.tilt else 0.0
     low, high = task.lower + inset, task.upper - inset
-    x0 = [start.postures.ravel(), [start.approach_angle_rad]]
-    lower = [np.tile(low, programme.postures), [start.lower_rad]]
-    upper = [np.tile(high, programme.postures), [start.upper_rad]]
+    x0: list[ArrayLike] = [start.postures.ravel(), [start.approach_angle_rad]]
+    lower: list[ArrayLike] = [np.tile(low, programme.postures), [start.lower_rad]]
+    upper: list[ArrayLike] = [np.tile(high, programme.postures), [start.upper_rad]]
     if shape.strike:
         x0.append([start.strike_m / options.strike_zone_m])
         lower.append([0.0])
@@ -153,10 +154,10 @@ def make_instance(
     )
     instance = Instance(
         programme,
-        np.concatenate(x0),
+        np.hstack(x0),
         parameters,
-        np.concatenate(lower),
-        np.concatenate(upper),
+        np.hstack(lower),
+        np.hstack(upper),
         slack_references=references,
     )
     return replace(instance, x0=instance.inside(instance.x0))

@@ -12,15 +12,16 @@ from qpsolvers.exceptions import QPError
 from scipy.sparse import csc_matrix
 
 from solver.robots.model import Array
-from solver.tolerances import QP_ITERATIONS, QP_TOLERANCE
+from solver.tolerances import OSQP_ITERATIONS, OSQP_STEP, OSQP_TOLERANCE, QP_TOLERANCE
 
 _SETTINGS: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {
         "daqp": {"primal_tol": QP_TOLERANCE, "dual_tol": QP_TOLERANCE},
         "osqp": {
-            "eps_abs": QP_TOLERANCE,
-            "eps_rel": QP_TOLERANCE,
-            "max_iter": QP_ITERATIONS,
+            "eps_abs": OSQP_TOLERANCE,
+            "eps_rel": OSQP_TOLERANCE,
+            "max_iter": OSQP_ITERATIONS,
+            "rho": OSQP_STEP,
             "polishing": True,
         },
         "piqp": {"eps_abs": QP_TOLERANCE, "eps_rel": QP_TOLERANCE, "backend": "dense"},
@@ -41,7 +42,9 @@ class QuadraticAnswer:
     detail: str = ""
 
 
-def solve_quadratic(hessian: Array, gradient: Array, g: Array, h: Array, solver: str) -> Any:
+def solve_quadratic(
+    hessian: Array, gradient: Array, g: Array, h: Array, solver: str
+) -> QuadraticAnswer:
     """Minimises x' hessian x / 2 + gradient' x subject to g x <= h.
 
     Args:

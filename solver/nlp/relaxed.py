@@ -74,9 +74,7 @@ def solve_relaxed(
         if broken is None:
             if _jumps(rows, retreats):
                 return RelaxedAnswer("wrist_jump", spent, start.tool_side)
-            return RelaxedAnswer(
-                "solved", spent, start.tool_side, seen, branch, thinning, rows[0]
-            )
+            return RelaxedAnswer("solved", spent, start.tool_side, seen, branch, thinning, rows[0])
         if np.any(np.abs(start.retreats_m - retreats[broken]) == 0.0):
             return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
         postures = result.x[: programme.angle].reshape(programme.postures, programme.joints)

@@ -1,15 +1,15 @@
 """A sequential quadratic programme on CasADi's exact derivatives, in the space of the free motions.
 
 Each iteration factorises the Jacobian of the equations, J' = Q R, Q = [Y Z]. A step is
-d = Y p r + Z u: p solves the linearised equations, r <= 1 is how much of it is taken (one wherever
-limits allow), and u moves along the equations: for an unrelaxed task that is the approach angle
-alone. So the quadratic programme has a handful of variables, and only Z' H Z, the reduced Hessian
-of the Lagrangian, has to be made positive definite.
+d = Y p + Z u: p solves the linearised equations, and u moves along them, which for an unrelaxed
+task is the approach angle alone. So the quadratic programme has a handful of variables, and only
+Z' H Z, the reduced Hessian of the Lagrangian, has to be made positive definite.
 
-A step is taken when the exact l1 merit function, cost + mu (violation), falls enough (Armijo), with
-a second-order correction before it is halved. mu is above every multiplier, so that a step never
-trades feasibility for cost. Source: Nocedal and Wright, Numerical Optimization, 2006, algorithms
-18.3 and 18.11; the factor r is Powell's.
+A step is taken when the exact merit function cost + mu |equations| falls enough (Armijo), with
+second-order corrections before it is halved. mu is above every multiplier, so that a step never
+trades feasibility for cost; bounds and inequalities hold at every point. Where limits forbid to
+solve the linearised equations, a step only repairs. Source: Nocedal and Wright, Numerical
+Optimization, 2006, algorithm 18.3 and section 18.3.
 """
 
 from dataclasses import dataclass
@@ -25,13 +25,14 @@ from solver.nlp.quadratic import QuadraticAnswer, solve_quadratic
 from solver.robots.model import Array, Robot
 from solver.tolerances import (
     NLP_TOLERANCE,
+    SQP_CORRECTIONS,
     SQP_CURVATURE,
+    SQP_DAMPING,
     SQP_DECREASE,
     SQP_HALVINGS,
     SQP_ITERATIONS,
     SQP_LONGEST_STEP,
     SQP_PENALTY,
-    SQP_RANGE_PRICE,
     SQP_RANK,
     SQP_ROUNDING,
     SQP_SLACK_CURVATURE,
@@ -71,7 +72,7 @@ class _Evaluator:
         self._gradient = np.zeros(count)
         self._jacobian = np.zeros((constraints, count), order="F")
         self._hessian = np.zeros((count, count), order="F")
-        self._keep = []
+        self._keep: list[Any] = []
         self._values = self._bind(
             functions.values, (self._x, self._parameters), (self._cost, self._constraints)
         )
@@ -84,9 +85,9 @@ class _Evaluator:
     def _bind(self, function: Any, arguments: tuple[Array, ...], results: tuple[Array, ...]) -> Any:
         buffer, trigger = function.buffer()
         for k, array in enumerate(arguments):
-            buffer.set_arg(k, memoryview(array))
+            buffer.set_arg(k, array.data)
         for k, array in enumerate(results):
-            buffer.set_res(k, memoryview(array.ravel(order="K")))
+            buffer.set_res(k, array.ravel(order="K").data)
         self._keep.append(buffer)
         return trigger
 
@@ -146,7 +147,7 @@ class _Search:
     def _at(self, x: Array) -> _Point:
         cost, constraints = self.evaluator.values(x)
         # Inequalities hold at every point: `Instance.inside` sees to it.
-        violation = float(np.abs(constraints[: self.equalities]).sum())
+        violation = float(np.linalg.norm(constraints[: self.equalities]))
         return _Point(x, cost, constraints, violation)
 
     def iterate(self) -> str | None:
@@ -158,23 +159,52 @@ class _Search:
         equations = _factorised(jacobian[: self.equalities, :k])
         if equations is None:
             return "singular"
-        step, answer, taken = self._step(equations, gradient, jacobian, hessian)
+        step, answer = self._step(equations, gradient, jacobian, hessian)
+        feasible = here.violation <= NLP_TOLERANCE
         if not answer.found:
-            return f"quadratic_programme_failed: {answer.detail}"
+            failed = f"quadratic_programme_failed: {answer.detail}"
+            return failed if feasible else self._restore(jacobian)
         self._update_multipliers(equations, gradient, jacobian, hessian, step, answer)
-        length = float(np.abs(step[:k]).max())
-        if length <= SQP_STEP and here.violation <= NLP_TOLERANCE:
+        if feasible and float(np.abs(step[:k]).max()) <= SQP_STEP:
             return "solved"
-        self.price = max(self.price, SQP_PENALTY * float(np.abs(self.multipliers).max()))
-        promised = float(gradient @ step) - self.price * taken * here.violation
-        scale = SQP_ROUNDING * (1 + abs(here.cost) + self.price * here.violation)
-        if promised > -scale:
-            return "solved" if here.violation <= NLP_TOLERANCE else "stalled"
+        slope = float(gradient @ step)
+        self.price = max(self.price, SQP_PENALTY * float(np.linalg.norm(self.multipliers)))
+        promised = slope - self.price * here.violation
+        if promised > -SQP_ROUNDING * (1 + abs(here.cost) + self.price * here.violation):
+            return "solved" if feasible else "stalled"
         if not self._search(equations, step, promised):
-            return "line_search_failed"
+            return "line_search_failed" if feasible else self._restore(jacobian)
         moved = float(np.abs(self.point.x[:k] - here.x[:k]).max())
         done = moved <= SQP_STEP and self.point.violation <= NLP_TOLERANCE
         return "solved" if done else None
+
+    def _restore(self, jacobian: Array) -> str | None:
+        """A step that only repairs: least squares of the linearised equations inside the limits.
+
+        For where limits forbid to solve them all at once.
+        """
+        here, k = self.point, self.kinematic
+        linear, residual = jacobian[: self.equalities, :k], here.constraints[: self.equalities]
+        down, up = self._room()
+        g, h = np.concatenate((np.eye(k), -np.eye(k))), np.concatenate((up, down))
+        quadratic = linear.T @ linear + SQP_DAMPING * np.eye(k)
+        answer = solve_quadratic(quadratic, linear.T @ residual, g, h, self.qp_solver)
+        if not answer.found:
+            return f"quadratic_programme_failed: {answer.detail}"
+        step = np.zeros(len(here.x))
+        step[:k] = answer.x
+        ahead_if_linear = float(np.linalg.norm(residual + linear @ answer.x))
+        promised = here.violation - ahead_if_linear
+        if promised <= SQP_DECREASE * here.violation:
+            return "locally_infeasible"
+        share = 1.0
+        for _ in range(SQP_HALVINGS):
+            ahead = self._moved(here.x, share * step)
+            if ahead.violation <= here.violation - SQP_DECREASE * share * promised:
+                self.point = ahead
+                return None
+            share /= 2
+        return "line_search_failed"
 
     def _guess_multipliers(self) -> None:
         """Multipliers as if every slack stood at a bound and no limit did."""
@@ -189,52 +219,38 @@ class _Search:
 
     def _step(
         self, equations: _Equations, gradient: Array, jacobian: Array, hessian: Array
-    ) -> tuple[Array, QuadraticAnswer, float]:
-        """A step, the quadratic programme's answer, and the share of the equations it solves."""
+    ) -> tuple[Array, QuadraticAnswer]:
+        """A step and the quadratic programme's answer."""
         here, k, equal = self.point, self.kinematic, self.equalities
-        shortest = equations.shortest(here.constraints[:equal])
-        curved = hessian[:k, :k]
-        free, slacks = equations.z.shape[1], len(here.x) - k
-        whole = bool(here.violation <= NLP_TOLERANCE)
-        basis = np.zeros((len(here.x), free + slacks + (not whole)))
-        basis[:k, :free] = equations.z
-        basis[k:, free : free + slacks] = np.eye(slacks)
-        size = basis.shape[1]
-        quadratic = np.zeros((size, size))
-        quadratic[:free, :free] = _positive(equations.z.T @ curved @ equations.z)
-        rest = np.arange(free, size)
-        quadratic[rest, rest] = SQP_SLACK_CURVATURE
-        linear = basis.T @ gradient
         base = np.zeros(len(here.x))
-        if whole:
-            base[:k] = shortest
-            linear[:free] += equations.z.T @ (curved @ shortest)
-        else:
-            basis[:k, -1] = shortest
-            linear[-1] = float(gradient[:k] @ shortest) - SQP_RANGE_PRICE * (1 + self.price)
-        g, h = self._constraint_rows(basis, base, jacobian, whole)
-        answer = solve_quadratic(quadratic, linear, g, h, self.qp_solver)
-        taken = 1.0 if whole else min(max(float(answer.x[-1]), 0.0), 1.0)
-        return base + basis @ answer.x, answer, taken
-
-    def _constraint_rows(
-        self, basis: Array, base: Array, jacobian: Array, whole: bool
-    ) -> tuple[Array, Array]:
-        here, k, equal = self.point, self.kinematic, self.equalities
-        x, low, high = here.x[:k], self.instance.lower[:k], self.instance.upper[:k]
-        down = np.minimum(x - low, SQP_LONGEST_STEP)
-        up = np.minimum(high - x, SQP_LONGEST_STEP)
+        base[:k] = equations.shortest(here.constraints[:equal])
+        free, slacks = equations.z.shape[1], len(here.x) - k
+        basis = np.zeros((len(here.x), free + slacks))
+        basis[:k, :free] = equations.z
+        basis[k:, free:] = np.eye(slacks)
+        curved = equations.z.T @ hessian[:k, :k]
+        quadratic = SQP_SLACK_CURVATURE * np.eye(free + slacks)
+        quadratic[:free, :free] = _positive(curved @ equations.z)
+        linear = basis.T @ gradient
+        linear[:free] += curved @ base[:k]
+        down, up = self._room()
         other = jacobian[equal:]
         moves = basis[:k]
-        rows = [moves, -moves, -(other @ basis)]
-        ends = [up - base[:k], down + base[:k], here.constraints[equal:] + other @ base]
-        if not whole:
-            share = np.zeros((1, basis.shape[1]))
-            share[0, -1] = 1.0
-            rows += [share, -share]
-            ends += [np.ones(1), np.zeros(1)]
-        # Standing still is always allowed: an end below zero is what rounding has left.
-        return np.concatenate(rows), np.maximum(np.concatenate(ends), 0.0)
+        g = np.concatenate((moves, -moves, -(other @ basis)))
+        h = np.concatenate(
+            (up - base[:k], down + base[:k], here.constraints[equal:] + other @ base)
+        )
+        if here.violation <= NLP_TOLERANCE:
+            # Standing still is allowed then: an end below zero is what rounding has left.
+            h = np.maximum(h, 0.0)
+        answer = solve_quadratic(quadratic, linear, g, h, self.qp_solver)
+        return base + basis @ answer.x, answer
+
+    def _room(self) -> tuple[Array, Array]:
+        """How far each variable may go down and up in a step."""
+        x = self.point.x[: self.kinematic]
+        low, high = self.instance.lower[: len(x)], self.instance.upper[: len(x)]
+        return np.minimum(x - low, SQP_LONGEST_STEP), np.minimum(high - x, SQP_LONGEST_STEP)
 
     def _update_multipliers(
         self,
@@ -258,19 +274,21 @@ class _Search:
         before = here.cost + self.price * here.violation
         share = 1.0
         for _ in range(SQP_HALVINGS):
-            ahead = self._moved(here.x, share * step)
             allowed = before + SQP_DECREASE * share * promised
             allowed += SQP_ROUNDING * (1 + abs(before))
-            if ahead.cost + self.price * ahead.violation <= allowed:
-                self.point = ahead
-                return True
-            if share == 1.0:
+            ahead = self._moved(here.x, share * step)
+            for _ in range(SQP_CORRECTIONS):
+                if ahead.cost + self.price * ahead.violation <= allowed:
+                    break
                 correction = np.zeros_like(step)
                 correction[:k] = equations.shortest(ahead.constraints[: self.equalities])
                 corrected = self._moved(ahead.x, correction)
-                if corrected.cost + self.price * corrected.violation <= allowed:
-                    self.point = corrected
-                    return True
+                if corrected.violation >= ahead.violation:
+                    break
+                ahead = corrected
+            if ahead.cost + self.price * ahead.violation <= allowed:
+                self.point = ahead
+                return True
             share /= 2
         return False
 

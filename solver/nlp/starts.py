@@ -19,7 +19,7 @@ from solver.kinematics.forward import forward_kinematics
 from solver.methods.semi_analytic import best_on_arcs
 from solver.nlp.instance import Start
 from solver.robots.model import Array
-from solver.tolerances import RELAXED_SAMPLES, RELAXED_SWINGS
+from solver.tolerances import NEAR_FEASIBLE_RAD, RELAXED_SAMPLES, RELAXED_SWINGS
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def start_at(task: ApproachTask, tool_side: int, branch: int, thinning: Array) -
 def nearest_starts(task: ApproachTask, count: int) -> list[Start]:
     """Starts from the approach angles that come closest to feasible, the closest first.
 
-    One for each corner, tool side and branch at most.
+    One for each corner, tool side and branch at most, and none that is far from feasible.
     """
     peaks: list[tuple[float, int, int, int, float]] = []
     tasks = corner_tasks(task)
@@ -89,7 +89,8 @@ def nearest_starts(task: ApproachTask, count: int) -> list[Start]:
             angles, margins, _ = sample_task(fixed, side, RELAXED_SAMPLES)
             for branch, best in enumerate(margins.argmax(axis=1)):
                 margin = float(margins[branch, best])
-                peaks.append((-margin, k, side, branch, float(angles[best])))
+                if margin > -NEAR_FEASIBLE_RAD:
+                    peaks.append((-margin, k, side, branch, float(angles[best])))
     ends = np.array([task.options.standoff_m, 0.0])
     starts = []
     for _, k, side, branch, angle in sorted(peaks)[:count]:
