@@ -53,3 +53,6 @@ def _choose_cache_folder() -> None:
 _choose_cache_folder()  # Numba reads it when a function is decorated, so it must be set before
 
 kernel = numba.njit(cache=True, error_model="numpy", nogil=True)
+
+inlined = numba.njit(error_model="numpy", inline="always")
+"""For the arithmetic of inner loops: without a call in it a loop over arrays is vectorised."""

@@ -35,6 +35,9 @@ SINGULAR_WRIST: Final = 1e-10
 """sin(q5) below which q4 and q6 turn about one axis and q4 is set to zero. Above it the directions
 that give q4 still have six digits; below it the axis error made is at most 1e-10 rad."""
 
+TINY_M2: Final = 1e-30
+"""A squared distance below which a point lies on the axis and has no direction [m2]."""
+
 RIGHT_ANGLE_RAD: Final = 1e-12
 """How far a link twist may be from a right angle for the closed form [rad]: rounding of radians."""
 
@@ -57,7 +60,21 @@ NEAR_FEASIBLE_RAD: Final = 0.3
 would have to rise by 0.3 rad within 0.5 deg of approach angle."""
 
 ARC_END_RAD: Final = 1e-12
-"""Width to which the ends of an arc are bisected [rad]; the feasible side is kept."""
+"""Width to which the ends of an arc are refined [rad]; the feasible side is kept."""
+
+ARC_CELLS: Final = 72
+"""Cells of one turn in which arcs are searched (5 deg). A single joint's margin is smooth in the
+angle, with a few extrema a turn; a cell must not hold two of them."""
+
+CELL_SWING_COSINE: Final = 0.7
+"""Cosine of the turn of a joint from cell to cell (0.8 rad) from which the cell is halved: beside a
+straight wrist joints 4 and 6 turn by half a turn in an arbitrarily short way."""
+
+NARROWEST_CELL_RAD: Final = 1e-6
+"""Cells are not halved further [rad]: a hundredth of the narrowest arc that may not be missed."""
+
+EXTREME_ANGLE_RAD: Final = 1e-7
+"""Width to which an extremum of a margin is bracketed [rad]; the value is then good to 1e-14."""
 
 ANGLE_STEP_RAD: Final = 1e-10
 """Width to which a one-dimensional optimum in the approach angle is bracketed [rad]."""
@@ -76,8 +93,18 @@ EXCHANGE_DENSITY: Final = 8
 EXCHANGE_ZOOMS: Final = 4
 """How often the place of that posture is narrowed, eightfold each time: 2 mm to 0.5 um."""
 
-ARC_PIECES: Final = 8
-"""Pieces at least in which the effort of an arc is sampled; long arcs have one for 0.5 degrees."""
+EFFORT_CELL_RAD: Final = 0.03
+"""Cells in which effort is sampled along an arc [rad]: joints turn nearly evenly in one."""
+
+LEAST_EFFORT_CELLS: Final = 4
+"""Cells of the shortest arc."""
+
+EFFORT_SWING_RAD: Final = 0.5
+"""Turn of a joint within half a cell above which the cell is halved before kinks are looked for."""
+
+SMOOTH_MINIMUM_RAD: Final = 3e-6
+"""Width to which a smooth minimum of the effort is closed in on [rad]; effort is flat there, so it
+is good to 1e-11."""
 
 # --- Nonlinear programme ------------------------------------------------------------------------
 NLP_TOLERANCE: Final = 1e-9

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.approach.arc_search import WHOLE_TURN, arcs_of
 from solver.approach.feasibility import sample
-from solver.approach.search import feasible_arcs
 from solver.approach.task import ApproachTask, approach_task
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem import Problem, Target
@@ -18,13 +18,22 @@ from solver.tolerances import ARC_SAMPLES
 class Arc:
     """Approach angles, lower to upper [rad], at which one branch is feasible in the whole cut-in.
 
-    `upper_rad` is beyond pi where the arc crosses the half turn.
+    Attributes:
+        tool_side: 1 or -1.
+        branch: 0 to 7.
+        lower_rad: in [-pi, pi].
+        upper_rad: beyond pi where the arc crosses the half turn.
+        lower_limit: what ends the arc there: a joint's name, "reach" or "wrist_jump"; None where
+            the arc is the whole turn.
+        upper_limit: the same at the upper end.
     """
 
     tool_side: int
     branch: int
     lower_rad: float
     upper_rad: float
+    lower_limit: str | None = None
+    upper_limit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -59,11 +68,12 @@ def sample_task(task: ApproachTask, tool_side: int, n: int) -> tuple[Array, Arra
 
 def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
     """Feasible arcs of every branch and tool side of a task."""
+    limits = (*task.robot.joint_names, "reach", "wrist_jump")
     arcs: list[Arc] = []
     for side in task.tool_sides:
-        angles, margins, _ = sample_task(task, side, ARC_SAMPLES)
-        found = feasible_arcs(task.for_kernels(side), angles, margins)
-        arcs += [Arc(side, int(branch), float(low), float(high)) for branch, low, high in found]
+        for branch, low, high, by_low, by_high in arcs_of(task.packed(side)):
+            ends = (None if code == WHOLE_TURN else limits[int(code)] for code in (by_low, by_high))
+            arcs.append(Arc(side, int(branch), float(low), float(high), *ends))
     return tuple(arcs)
 
 

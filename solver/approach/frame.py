@@ -41,20 +41,34 @@ class ApproachFrame:
 
 
 def approach_frame(position: Sequence[float], branch_direction: Sequence[float]) -> ApproachFrame:
-    """The frame of a target.
+    """The frame of a target; see `approach_frames`."""
+    vectors = approach_frames(
+        np.asarray(position, dtype=np.float64)[None],
+        np.asarray(branch_direction, dtype=np.float64)[None],
+    )
+    return ApproachFrame(*(vector[0] for vector in vectors))
 
-    Where the target's position vector is parallel to the branch, "straight out" is taken from the
+
+def approach_frames(positions: Array, branch_directions: Array) -> tuple[Array, Array, Array]:
+    """Frames of n targets: b, u and b x u, shape (n, 3) each, from positions and directions (n, 3).
+
+    Where a target's position vector is parallel to the branch, "straight out" is taken from the
     base frame's z axis, then from its x axis.
     """
-    branch = _unit(np.asarray(branch_direction, dtype=np.float64))
-    for candidate in (np.asarray(position, dtype=np.float64), np.eye(3)[2], np.eye(3)[0]):
-        length = np.linalg.norm(candidate)
-        normal = candidate - (candidate @ branch) * branch
-        if length > 0 and np.linalg.norm(np.cross(branch, candidate)) >= PARALLEL_SINE * length:
-            # Taking the component along b away twice leaves rounding errors of rounding errors.
-            outward = _unit(normal - (normal @ branch) * branch)
-            return ApproachFrame(branch, outward, np.cross(branch, outward))
-    raise AssertionError("z and x cannot both be parallel to the branch")
+    branch = _unit(branch_directions)
+    outward = np.empty_like(branch)
+    left = np.ones(len(branch), dtype=np.bool_)
+    for candidate in (positions, np.eye(3)[[2]], np.eye(3)[[0]]):
+        vectors = np.broadcast_to(candidate, branch.shape)
+        sines = np.linalg.norm(np.cross(branch, vectors), axis=1)
+        lengths = np.linalg.norm(vectors, axis=1)
+        usable = left & (lengths > 0) & (sines >= PARALLEL_SINE * lengths)
+        normal = _without(vectors[usable], branch[usable])
+        # Taking the component along b away twice leaves rounding errors of rounding errors.
+        outward[usable] = _unit(_without(normal, branch[usable]))
+        left &= ~usable
+    assert not left.any(), "z and x cannot both be parallel to the branch"
+    return branch, outward, np.cross(branch, outward)
 
 
 def signed_angle(angle: float) -> float:
@@ -63,7 +77,11 @@ def signed_angle(angle: float) -> float:
     return math.pi if turned == -math.pi else turned
 
 
-def _unit(vector: Array) -> Array:
+def _without(vectors: Array, branch: Array) -> Array:
+    return np.asarray(vectors - np.sum(vectors * branch, axis=1, keepdims=True) * branch)
+
+
+def _unit(vectors: Array) -> Array:
     # Scaled first: a direction may have any length, and its square may not be a number.
-    scaled = vector / np.max(np.abs(vector))
-    return np.asarray(scaled / np.linalg.norm(scaled))
+    scaled = vectors / np.max(np.abs(vectors), axis=1, keepdims=True, initial=0.0)
+    return np.asarray(scaled / np.linalg.norm(scaled, axis=1, keepdims=True))

@@ -8,6 +8,7 @@ import numpy as np
 
 from solver.approach.feasibility import CutInTask, trace
 from solver.approach.frame import ApproachFrame, approach_frame
+from solver.approach.packed import PackedTask, jump_cosines, pack
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Options, Problem, Target
 from solver.robots.model import Array, Robot, Tool
@@ -65,6 +66,25 @@ class ApproachTask:
             weights=np.asarray(self.joint_weights),
             squared=self.options.norm == "l2",
         )
+
+    def packed(self, tool_side: int) -> PackedTask:
+        """The task as the inner loops take it, with the tool on one side."""
+        frame = self.frame
+        vectors = (
+            np.asarray(self.target.position_m, dtype=np.float64),
+            tool_side * frame.branch,
+            frame.outward,
+            frame.sideways,
+        )
+        numbers = pack(
+            wrist_geometry(self.robot, self.tool),
+            (self.lower, self.upper),
+            (vectors[0][None], vectors[1][None], vectors[2][None], vectors[3][None]),
+            np.asarray(self.reference),
+            np.asarray(self.joint_weights),
+            self.options.norm == "l2",
+        )
+        return PackedTask(numbers[0], np.asarray(self.retreats_m), jump_cosines(self.retreats_m))
 
     def postures(self, angle: float, tool_side: int, branch: int, retreats: Array) -> Array:
         """Closed-form postures of the cut-in, shape (len(retreats), 6) [rad]; retreats end at 0."""

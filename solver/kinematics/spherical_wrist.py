@@ -33,10 +33,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.compiled import kernel
+from solver.compiled import inlined, kernel
 from solver.exceptions import UnsupportedKinematics
+from solver.kinematics.arctangent import atan2
 from solver.robots.model import Array, Robot, Tool
-from solver.tolerances import REACH_ROUNDING_M, RIGHT_ANGLE_RAD, SINGULAR_WRIST
+from solver.tolerances import REACH_ROUNDING_M, RIGHT_ANGLE_RAD, SINGULAR_WRIST, TINY_M2
 
 BRANCHES: Final = 8
 
@@ -48,6 +49,8 @@ class WristGeometry(NamedTuple):
     a2: float
     l3: float
     beta: float
+    cos_beta: float
+    sin_beta: float
     shoulder: float
     d1: float
     sign1: float
@@ -55,8 +58,8 @@ class WristGeometry(NamedTuple):
     sign4: float
     sign5: float
     tool_length: float
-    offsets: Array
-    middles: Array
+    offsets: tuple[float, ...]
+    middles: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -108,11 +111,14 @@ def wrist_geometry(robot: Robot, tool: Tool) -> WristGeometry:
     if j2.a_m == 0.0 or math.hypot(j3.a_m, j4.d_m) == 0.0:
         raise UnsupportedKinematics(robot.name, "the upper arm or the forearm has no length")
     sign3 = math.copysign(1.0, j3.alpha_rad)
+    beta = math.atan2(-sign3 * j4.d_m, j3.a_m)
     return WristGeometry(
         a1=j1.a_m,
         a2=j2.a_m,
         l3=math.hypot(j3.a_m, j4.d_m),
-        beta=math.atan2(-sign3 * j4.d_m, j3.a_m),
+        beta=beta,
+        cos_beta=math.cos(beta),
+        sin_beta=math.sin(beta),
         shoulder=j2.d_m + j3.d_m,
         d1=j1.d_m,
         sign1=math.copysign(1.0, j1.alpha_rad),
@@ -120,8 +126,8 @@ def wrist_geometry(robot: Robot, tool: Tool) -> WristGeometry:
         sign4=math.copysign(1.0, j4.alpha_rad),
         sign5=math.copysign(1.0, j5.alpha_rad),
         tool_length=j6.d_m + tool.length_m,
-        offsets=np.array([joint.offset_rad for joint in robot.joints]),
-        middles=(robot.lower + robot.upper) / 2,
+        offsets=tuple(joint.offset_rad for joint in robot.joints),
+        middles=tuple(float(value) for value in (robot.lower + robot.upper) / 2),
     )
 
 
@@ -151,89 +157,151 @@ def wrap(angle: float) -> float:
     return angle - 2 * math.pi * math.floor((angle + math.pi) / (2 * math.pi))
 
 
-@kernel
-def arm_joints(g, cx, cy, cz, shoulder, elbow):
-    """theta1, theta2, theta3 and the reach margin [m] for a wrist centre on one arm branch."""
-    rho = math.hypot(cx, cy)
-    x = math.sqrt(max(rho * rho - g.shoulder * g.shoulder, 0.0))
+@inlined
+def arm_turns(g, cx, cy, cz, shoulder):
+    """The arm's angles but for the elbow's sign, as cosines and sines, for a wrist centre.
+
+    Returns cos1, sin1, r, s, cos g, |sin g|, 1 / (distance of the wrist centre times the length of
+    the stretched or folded arm towards it) [1/m2], and the reach margin [m].
+    """
+    rho2 = cx * cx + cy * cy
+    x = math.sqrt(max(rho2 - g.shoulder * g.shoulder, 0.0))
     if shoulder == 1:
         x = -x
-    theta1 = math.atan2(cy, cx) - math.atan2(-g.sign1 * g.shoulder, x)
-    r = x - g.a1
-    s = g.sign1 * (cz - g.d1)
-    distance = math.hypot(r, s)
-    margin = min(g.a2 + g.l3 - distance, distance - abs(g.a2 - g.l3), rho - abs(g.shoulder))
-    cos_g = (distance * distance - g.a2 * g.a2 - g.l3 * g.l3) / (2 * g.a2 * g.l3)
-    gamma = math.acos(min(max(cos_g, -1.0), 1.0))
-    if elbow == 1:
-        gamma = -gamma
-    theta2 = math.atan2(s, r) - math.atan2(g.l3 * math.sin(gamma), g.a2 + g.l3 * math.cos(gamma))
-    return theta1, theta2, gamma - g.beta, margin
+    if rho2 > TINY_M2:
+        cos1 = (cx * x - g.sign1 * g.shoulder * cy) / rho2
+        sin1 = (cy * x + g.sign1 * g.shoulder * cx) / rho2
+    else:
+        cos1, sin1 = (-1.0 if shoulder == 1 else 1.0), 0.0
+    r, s = x - g.a1, g.sign1 * (cz - g.d1)
+    d2 = r * r + s * s
+    distance = math.sqrt(d2)
+    margin = min(g.a2 + g.l3 - distance, distance - abs(g.a2 - g.l3))
+    margin = min(margin, math.sqrt(rho2) - abs(g.shoulder))
+    cosine = (d2 - g.a2 * g.a2 - g.l3 * g.l3) / (2 * g.a2 * g.l3)
+    cos_g = min(max(cosine, -1.0), 1.0)
+    sin_g = math.sqrt((1.0 - cos_g) * (1.0 + cos_g))
+    length2 = d2
+    if cosine != cos_g:
+        length2 = distance * abs(g.a2 + g.l3 * cos_g)
+    return cos1, sin1, r, s, cos_g, sin_g, 1.0 / max(length2, TINY_M2), margin
+
+
+@inlined
+def elbow_turns(g, r, s, cos_g, sin_g, inverse2):
+    """cos2, sin2, cos3, sin3, cos(2 + 3), sin(2 + 3); sin_g carries the elbow's sign."""
+    k1, k2 = g.a2 + g.l3 * cos_g, g.l3 * sin_g
+    cos2, sin2 = (r * k1 + s * k2) * inverse2, (s * k1 - r * k2) * inverse2
+    cos3 = cos_g * g.cos_beta + sin_g * g.sin_beta
+    sin3 = sin_g * g.cos_beta - cos_g * g.sin_beta
+    return cos2, sin2, cos3, sin3, cos2 * cos3 - sin2 * sin3, sin2 * cos3 + cos2 * sin3
+
+
+@inlined
+def wrist_turns(g, cos1, sin1, cos23, sin23, x_axis, y_axis, z_axis):
+    """r13, r23, cos5, r31, r32 of R36, for tool axes as tuples."""
+    x3 = (cos1 * cos23, sin1 * cos23, g.sign1 * sin23)
+    y3 = (g.sign3 * g.sign1 * sin1, -g.sign3 * g.sign1 * cos1)
+    z3 = (g.sign3 * sin23 * cos1, g.sign3 * sin23 * sin1, -g.sign3 * g.sign1 * cos23)
+    r13 = x3[0] * z_axis[0] + x3[1] * z_axis[1] + x3[2] * z_axis[2]
+    r23 = y3[0] * z_axis[0] + y3[1] * z_axis[1]
+    r33 = z3[0] * z_axis[0] + z3[1] * z_axis[1] + z3[2] * z_axis[2]
+    r31 = z3[0] * x_axis[0] + z3[1] * x_axis[1] + z3[2] * x_axis[2]
+    r32 = z3[0] * y_axis[0] + z3[1] * y_axis[1] + z3[2] * y_axis[2]
+    return r13, r23, -g.sign4 * g.sign5 * r33, r31, r32
 
 
 @kernel
-def wrist_joints(g, theta1, theta23, axes, wrist):
-    """theta4, theta5, theta6, and whether the wrist is singular; `axes` has x, y, z as columns."""
-    c1, s1 = math.cos(theta1), math.sin(theta1)
-    c23, s23 = math.cos(theta23), math.sin(theta23)
-    x3x, x3y, x3z = c1 * c23, s1 * c23, g.sign1 * s23
-    y3x, y3y = g.sign3 * g.sign1 * s1, -g.sign3 * g.sign1 * c1
-    z3x, z3y, z3z = g.sign3 * s23 * c1, g.sign3 * s23 * s1, -g.sign3 * g.sign1 * c23
-    r13 = x3x * axes[0, 2] + x3y * axes[1, 2] + x3z * axes[2, 2]
-    r23 = y3x * axes[0, 2] + y3y * axes[1, 2]
-    r33 = z3x * axes[0, 2] + z3y * axes[1, 2] + z3z * axes[2, 2]
-    sin5 = math.hypot(r13, r23)
-    cos5 = -g.sign4 * g.sign5 * r33
+def wrist_angles(g, r13, r23, cos5, r31, r32, first):
+    """theta4, theta5, theta6 with sin(theta5) >= 0, and whether the wrist is singular.
+
+    Where it is, theta4 is joint 4's zero and theta6 does the turning; `first` is the direction of
+    the tool's x axis in frame 3, (r11, r21).
+    """
+    sin5 = math.sqrt(r13 * r13 + r23 * r23)
     if sin5 < SINGULAR_WRIST:
         theta4 = g.offsets[3]
-        r11 = x3x * axes[0, 0] + x3y * axes[1, 0] + x3z * axes[2, 0]
-        r21 = y3x * axes[0, 0] + y3y * axes[1, 0]
-        first = math.atan2(r21, r11)
         turn = 0.0 if cos5 > 0 else math.pi
         same = -g.sign4 * g.sign5 * (1.0 if cos5 > 0 else -1.0)
-        return theta4, turn, same * (first - theta4 - turn), True
-    sign = 1.0 if wrist == 0 else -1.0
-    r31 = z3x * axes[0, 0] + z3y * axes[1, 0] + z3z * axes[2, 0]
-    r32 = z3x * axes[0, 1] + z3y * axes[1, 1] + z3z * axes[2, 1]
-    theta4 = math.atan2(sign * g.sign5 * r23, sign * g.sign5 * r13)
-    theta5 = math.atan2(sign * sin5, cos5)
-    theta6 = math.atan2(-sign * g.sign4 * r32, sign * g.sign4 * r31)
-    return theta4, theta5, theta6, False
+        return theta4, turn, same * (atan2(first[1], first[0]) - theta4 - turn), True
+    theta4 = atan2(g.sign5 * r23, g.sign5 * r13)
+    return theta4, atan2(sin5, cos5), atan2(-g.sign4 * r32, g.sign4 * r31), False
+
+
+@kernel
+def x_in_frame_3(g, cos1, sin1, cos23, sin23, x_axis):
+    """r11, r21: only a singular wrist needs them."""
+    r11 = cos1 * cos23 * x_axis[0] + sin1 * cos23 * x_axis[1] + g.sign1 * sin23 * x_axis[2]
+    r21 = g.sign3 * g.sign1 * (sin1 * x_axis[0] - cos1 * x_axis[1])
+    return r11, r21
+
+
+@kernel
+def pose_branch(g, place, x_axis, y_axis, z_axis, branch, q):
+    """Writes the posture of one branch for a pose in tuples to q; returns the reach margin [m]."""
+    cx = place[0] - g.tool_length * z_axis[0]
+    cy = place[1] - g.tool_length * z_axis[1]
+    cz = place[2] - g.tool_length * z_axis[2]
+    cos1, sin1, r, s, cos_g, sin_g, inverse2, margin = arm_turns(g, cx, cy, cz, branch // 4)
+    if branch // 2 % 2 == 1:
+        sin_g = -sin_g
+    cos2, sin2, cos3, sin3, cos23, sin23 = elbow_turns(g, r, s, cos_g, sin_g, inverse2)
+    turns = wrist_turns(g, cos1, sin1, cos23, sin23, x_axis, y_axis, z_axis)
+    first = x_in_frame_3(g, cos1, sin1, cos23, sin23, x_axis)
+    theta4, theta5, theta6, flat = wrist_angles(g, *turns, first)
+    theta1, theta2, theta3 = atan2(sin1, cos1), atan2(sin2, cos2), atan2(sin3, cos3)
+    _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6, branch % 2 == 1 and not flat)
+    return margin
 
 
 @kernel
 def one_branch(g, position, axes, branch, q):
-    """Writes the posture of one branch to q, shape (6,) [rad]; returns the reach margin [m]."""
-    cx = position[0] - g.tool_length * axes[0, 2]
-    cy = position[1] - g.tool_length * axes[1, 2]
-    cz = position[2] - g.tool_length * axes[2, 2]
-    theta1, theta2, theta3, margin = arm_joints(g, cx, cy, cz, branch // 4, branch // 2 % 2)
-    theta4, theta5, theta6, _ = wrist_joints(g, theta1, theta2 + theta3, axes, branch % 2)
-    _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6)
-    return margin
+    """Writes the posture of one branch to q, shape (6,) [rad]; returns the reach margin [m].
+
+    `axes` has the tool's x, y, z as columns, shape (3, 3).
+    """
+    place = (position[0], position[1], position[2])
+    x_axis, y_axis = (axes[0, 0], axes[1, 0], axes[2, 0]), (axes[0, 1], axes[1, 1], axes[2, 1])
+    return pose_branch(g, place, x_axis, y_axis, (axes[0, 2], axes[1, 2], axes[2, 2]), branch, q)
 
 
 @kernel
 def all_branches(g, poses, joints, margins, singular):
     """Fills joints (n, 8, 6), margins (n, 4) and singular (n, 8) for poses of shape (n, 4, 4)."""
     for n in range(len(poses)):
-        axes = poses[n, :3, :3]
-        cx = poses[n, 0, 3] - g.tool_length * axes[0, 2]
-        cy = poses[n, 1, 3] - g.tool_length * axes[1, 2]
-        cz = poses[n, 2, 3] - g.tool_length * axes[2, 2]
-        for arm in range(BRANCHES // 2):
-            theta1, theta2, theta3, margin = arm_joints(g, cx, cy, cz, arm // 2, arm % 2)
-            margins[n, arm] = margin
-            for wrist in range(2):
-                theta4, theta5, theta6, flat = wrist_joints(g, theta1, theta2 + theta3, axes, wrist)
-                singular[n, 2 * arm + wrist] = flat
-                q = joints[n, 2 * arm + wrist]
-                _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6)
+        pose = poses[n]
+        x_axis = (pose[0, 0], pose[1, 0], pose[2, 0])
+        y_axis = (pose[0, 1], pose[1, 1], pose[2, 1])
+        z_axis = (pose[0, 2], pose[1, 2], pose[2, 2])
+        cx = pose[0, 3] - g.tool_length * z_axis[0]
+        cy = pose[1, 3] - g.tool_length * z_axis[1]
+        cz = pose[2, 3] - g.tool_length * z_axis[2]
+        for shoulder in range(2):
+            cos1, sin1, r, s, cos_g, sin_g, inverse2, margin = arm_turns(g, cx, cy, cz, shoulder)
+            theta1 = atan2(sin1, cos1)
+            for elbow in range(2):
+                arm = 2 * shoulder + elbow
+                margins[n, arm] = margin
+                turns = elbow_turns(g, r, s, cos_g, sin_g if elbow == 0 else -sin_g, inverse2)
+                cos2, sin2, cos3, sin3, cos23, sin23 = turns
+                theta2, theta3 = atan2(sin2, cos2), atan2(sin3, cos3)
+                wrist = wrist_turns(g, cos1, sin1, cos23, sin23, x_axis, y_axis, z_axis)
+                first = x_in_frame_3(g, cos1, sin1, cos23, sin23, x_axis)
+                theta4, theta5, theta6, flat = wrist_angles(g, *wrist, first)
+                for flip in range(2):
+                    q = joints[n, 2 * arm + flip]
+                    turned = flip == 1 and not flat
+                    _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6, turned)
+                    singular[n, 2 * arm + flip] = flat
 
 
 @kernel
-def _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6):
-    q[0], q[1], q[2] = theta1, theta2, theta3
-    q[3], q[4], q[5] = theta4, theta5, theta6
-    for i in range(6):
-        q[i] = g.middles[i] + wrap(q[i] - g.offsets[i] - g.middles[i])
+def _write(g, q, theta1, theta2, theta3, theta4, theta5, theta6, turned):
+    # The other wrist: half a turn of joints 4 and 6, joint 5 mirrored.
+    half = math.pi if turned else 0.0
+    q[0] = g.middles[0] + wrap(theta1 - g.offsets[0] - g.middles[0])
+    q[1] = g.middles[1] + wrap(theta2 - g.offsets[1] - g.middles[1])
+    q[2] = g.middles[2] + wrap(theta3 - g.offsets[2] - g.middles[2])
+    q[3] = g.middles[3] + wrap(theta4 + half - g.offsets[3] - g.middles[3])
+    q[4] = g.middles[4] + wrap((-theta5 if turned else theta5) - g.offsets[4] - g.middles[4])
+    q[5] = g.middles[5] + wrap(theta6 + half - g.offsets[5] - g.middles[5])

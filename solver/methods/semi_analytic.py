@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 from solver.approach.arcs import Arc, sample_angles, task_arcs
 from solver.approach.frame import signed_angle
-from solver.approach.search import least_effort
+from solver.approach.search import optimum_on_arc
 from solver.approach.task import ApproachTask
 from solver.diagnosis import diagnose
 from solver.methods.candidate import Candidate
 from solver.solution import Reason
-from solver.tolerances import ARC_PIECES, ARC_SAMPLES
+from solver.tolerances import ARC_SAMPLES
 
 
 @dataclass(frozen=True)
@@ -53,12 +53,11 @@ def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:
     best: ArcOptimum | None = None
     refined = 0
     for arc in task_arcs(task):
-        length = arc.upper_rad - arc.lower_rad
-        pieces = max(ARC_PIECES, math.ceil(length / (2 * math.pi) * ARC_SAMPLES))
-        angle, cost, count = least_effort(
-            task.for_kernels(arc.tool_side), arc.branch, arc.lower_rad, arc.upper_rad, pieces
+        below = math.inf if best is None else best.effort
+        angle, cost, count = optimum_on_arc(
+            task.packed(arc.tool_side), arc.branch, arc.lower_rad, arc.upper_rad, below
         )
         refined += count
-        if best is None or cost < best.effort:
+        if cost < below:
             best = ArcOptimum(arc, float(angle), float(cost), refined)
     return best
