@@ -175,8 +175,8 @@ RELAXED_STARTS: Final = 3
 RELAXED_NEAREST: Final = 6
 """Starts where no corner is feasible, from the angles that come closest."""
 
-RELAXED_SAMPLES: Final = 180
-"""Approach angles, two degrees apart, among which those starts are looked for."""
+RELAXED_SAMPLES: Final = 72
+"""Approach angles, five degrees apart, among which those starts are looked for."""
 
 RELAXED_ROUNDS: Final = 4
 """How often a row of the cut-in that does not hold is added to a relaxed programme."""
