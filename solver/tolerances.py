@@ -184,6 +184,10 @@ RELAXED_ROUNDS: Final = 4
 QP_TOLERANCE: Final = 1e-10
 """Tolerance of the quadratic programmes, below that of the programme they are part of."""
 
+PIQP_ROOM: Final = 1e-8
+"""Least room that PIQP is given at a limit [rad or share]: an interior-point method needs an
+interior. A step into that room is below SQP_STEP, and is clipped."""
+
 OSQP_TOLERANCE: Final = 1e-6
 """The same before polishing, for OSQP: a first-order method that stops making progress below;
 polishing then takes its active set and solves for it exactly."""

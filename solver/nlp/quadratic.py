@@ -12,7 +12,7 @@ from qpsolvers.exceptions import QPError
 from scipy.sparse import csc_matrix
 
 from solver.robots.model import Array
-from solver.tolerances import OSQP_ITERATIONS, OSQP_STEP, OSQP_TOLERANCE, QP_TOLERANCE
+from solver.tolerances import OSQP_ITERATIONS, OSQP_STEP, OSQP_TOLERANCE, PIQP_ROOM, QP_TOLERANCE
 
 _SETTINGS: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {
@@ -58,6 +58,8 @@ def solve_quadratic(
         The answer; errors of the solver are its `detail`.
     """
     sparse = solver == "osqp"  # it knows no other matrices, and warns when it has to convert
+    if solver == "piqp":
+        h = np.where((h >= 0) & (h < PIQP_ROOM), PIQP_ROOM, h)
     problem = qpsolvers.Problem(
         csc_matrix(hessian) if sparse else hessian, gradient, csc_matrix(g) if sparse else g, h
     )
