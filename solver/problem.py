@@ -224,8 +224,8 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
             if lowest == highest:
                 allowed = f"{type(value)(lowest)}: anything else is not available yet"
             yield Fault(("options", name), f"must be {allowed}")
-    if options.strike_zone_m > options.standoff_m:
-        # Further back than the forks reach, or the target is between them at standby already.
+    if options.standoff_m < options.strike_zone_m <= RANGES["strike_zone_m"][1]:
+        # Or the target would be between the forks at standby already.
         yield Fault(("options", "strike_zone_m"), "must not be longer than standoff_m")
     for i, part in enumerate(options.include or ()):
         if part not in INCLUDES:

@@ -48,7 +48,8 @@ def solve_by_ipopt(robot: Robot, instance: Instance) -> ProgrammeResult:
         )
     except RuntimeError as error:
         # CasADi raises what it cannot even begin with; the caller falls back on its warm start.
-        return ProgrammeResult(False, f"error: {error}", 0, instance.x0)
+        what = str(error).partition("\n")[0]
+        return ProgrammeResult(False, f"error: {what}", 0, instance.x0)
     stats = solver.stats()
     return ProgrammeResult(
         bool(stats["success"]),

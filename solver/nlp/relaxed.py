@@ -31,19 +31,15 @@ class RelaxedAnswer:
         status: "solved", or what went wrong.
         iterations: of the backend, over all rounds.
         tool_side: 1 or -1.
-        placement: where the tool is at thinning; None without an answer.
         branch: of the thinning posture.
-        thinning: the exact posture, shape (joints,) [rad].
-        standby: that behind it.
+        thinning: the exact posture, shape (joints,) [rad]; None without an answer.
     """
 
     status: str
     iterations: int
     tool_side: int
-    placement: Placement | None = None
     branch: int = 0
     thinning: Array | None = None
-    standby: Array | None = None
 
 
 def solve_relaxed(
@@ -74,8 +70,8 @@ def solve_relaxed(
         if broken is None:
             if _jumps(rows, retreats):
                 return RelaxedAnswer("wrist_jump", spent, start.tool_side)
-            return RelaxedAnswer("solved", spent, start.tool_side, seen, branch, thinning, rows[0])
-        if np.any(np.abs(start.retreats_m - retreats[broken]) == 0.0):
+            return RelaxedAnswer("solved", spent, start.tool_side, branch, thinning)
+        if retreats[broken] in start.retreats_m:
             return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
         postures = result.x[: programme.angle].reshape(programme.postures, programme.joints)
         start = replace(
