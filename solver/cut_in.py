@@ -48,13 +48,11 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
         return _postures(task, candidate, options.standoff_m - distances)
 
     rows = path(np.linspace(0.0, options.standoff_m, options.path_points))
-    direction = task.frame.direction(candidate.approach_angle_rad)
+    pose = forward_kinematics(task.robot, task.tool, rows[-1])
     step_s = TRAJECTORY_STEP_S
     for _ in range(TRAJECTORY_HALVINGS + 1):
         motion = time_cut_in(task.robot, options.standoff_m, rows, path, step_s)
-        deviation = line_deviation(
-            task.robot, task.tool, motion.joints, task.target.position_m, direction
-        )
+        deviation = line_deviation(task.robot, task.tool, motion.joints, pose[:3, 3], pose[:3, 2])
         if deviation <= options.straightness_m:
             break
         step_s /= 2
@@ -84,9 +82,7 @@ def retreat_rows(
     return rows
 
 
-def line_deviation(
-    robot: Robot, tool: Tool, rows: Array, point: Sequence[float], direction: Array
-) -> float:
+def line_deviation(robot: Robot, tool: Tool, rows: Array, point: Array, direction: Array) -> float:
     """Largest distance of the tool centre point from a line, in motion through rows [m].
 
     Args:
@@ -99,7 +95,7 @@ def line_deviation(
     shares = np.linspace(0.0, 1.0, DEVIATION_SAMPLES + 2)[:-1, None, None]
     between = (rows[:-1] + shares * np.diff(rows, axis=0)).reshape(-1, rows.shape[1])
     postures = np.concatenate((between, rows[-1:]))
-    offsets = forward_kinematics(robot, tool, postures)[:, :3, 3] - np.asarray(point)
+    offsets = forward_kinematics(robot, tool, postures)[:, :3, 3] - point
     across = offsets - np.outer(offsets @ direction, direction)
     return float(np.max(np.linalg.norm(across, axis=1)))
 

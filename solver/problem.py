@@ -57,6 +57,8 @@ class Options:
     samples: int = 50
     seed: int = 0
     certify: bool = False
+    nlp_backend: str = "sqp"
+    qp_solver: str = "daqp"
     include: Sequence[str] | None = None
 
 
@@ -190,17 +192,26 @@ RANGES: Final[dict[str, tuple[float, float]]] = {
     "limit_margin_rad": (0.0, 0.5),
     "samples": (1, 10_000),
     "seed": (0, 2**63 - 1),
+    "strike_zone_m": (0.0, 0.5),
+    "tilt_tolerance_rad": (0.0, 0.8),
     # Not built yet: only their neutral value is accepted, nothing is ignored in silence.
-    "strike_zone_m": (0.0, 0.0),
-    "tilt_tolerance_rad": (0.0, 0.0),
     "certify": (0, 0),
 }
 
 
 def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
-    from solver.registry import METHODS  # the methods' rows import this module
+    from solver.nlp.backends import BACKENDS  # the methods' rows import this module
+    from solver.nlp.quadratic import QP_SOLVERS
+    from solver.registry import METHODS
 
-    choices = {"method": tuple(METHODS), "order": ORDERS, "norm": NORMS, "weights": WEIGHTS}
+    choices = {
+        "method": tuple(METHODS),
+        "order": ORDERS,
+        "norm": NORMS,
+        "weights": WEIGHTS,
+        "nlp_backend": tuple(BACKENDS),
+        "qp_solver": QP_SOLVERS,
+    }
     for name, known in choices.items():
         value = getattr(options, name)
         if value not in known:
@@ -213,6 +224,9 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
             if lowest == highest:
                 allowed = f"{type(value)(lowest)}: anything else is not available yet"
             yield Fault(("options", name), f"must be {allowed}")
+    if options.standoff_m < options.strike_zone_m <= RANGES["strike_zone_m"][1]:
+        # Or the target would be between the forks at standby already.
+        yield Fault(("options", "strike_zone_m"), "must not be longer than standoff_m")
     for i, part in enumerate(options.include or ()):
         if part not in INCLUDES:
             detail = f"not available; available: {', '.join(INCLUDES)}"

@@ -12,7 +12,7 @@ from solver.robots.model import Array
 from solver.solution import Approach, Segment, SolverReport, Trajectory, Transfer
 from solver.tolerances import TRAJECTORY_STEP_S
 from solver.trajectory.timing import TimedRows, time_joint_line
-from solver.verification import cut_in_margin
+from solver.verification import cut_in_margin, thinning_placement
 
 PROPOSED = "proposed"
 
@@ -32,6 +32,8 @@ def propose(
         "joint_line", np.array([start, standby]), float(np.linalg.norm(standby - start))
     )
     trajectory = _trajectory(problem, start, cut_in)
+    used = thinning_placement(problem, target, candidate.tool_side, thinning)
+    options = problem.options
     return Approach(
         target_id=target.id,
         status=PROPOSED,
@@ -39,11 +41,13 @@ def propose(
         approach_angle_rad=candidate.approach_angle_rad,
         tool_side=candidate.tool_side,
         branch=candidate.branch,
+        strike_m=used.strike_m if options.strike_zone_m > 0 else None,
+        tilt_rad=used.tilt_rad if options.tilt_tolerance_rad > 0 else None,
         thinning_joints=thinning,
         standby_joints=standby,
         path_joints=cut_in.path_joints,
         path_deviation_m=cut_in.deviation_m,
-        effort=posture_effort(thinning, start, problem.joint_weights, problem.options.norm),
+        effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
         margin_rad=cut_in_margin(problem, cut_in.path_joints, trajectory),
         transfer=transfer,
         trajectory=trajectory,

@@ -104,6 +104,9 @@ class Approach:
         path_joints: the cut-in, shape (path_points, joints): standby first, thinning last [rad].
         path_deviation_m: largest distance of the tool centre point from the straight line in the
             motion as executed, between its rows too.
+        strike_m: how far the tool centre point is beyond the target along z at thinning, when the
+            problem has a strike zone.
+        tilt_rad: angle between the tool's y axis and the branch, when the problem tolerates one.
         effort: weighted joint travel from the previous standby (or the start) to thinning.
         margin_rad: smallest distance of a joint to its limit in the whole cut-in.
     """
@@ -115,6 +118,8 @@ class Approach:
     approach_angle_rad: float | None = None
     tool_side: int | None = None
     branch: int | None = None
+    strike_m: float | None = None
+    tilt_rad: float | None = None
     thinning_joints: Array | None = None
     standby_joints: Array | None = None
     path_joints: Array | None = None

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from solver.approach.frame import approach_frame
+from solver.approach.relaxation import Placement, placement, rotation, shortened
 from solver.cut_in import line_deviation
 from solver.effort import posture_effort
 from solver.kinematics.forward import forward_kinematics
@@ -80,6 +81,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
     parts = (
         _shape_residuals(problem, claim),
         _path_residuals(problem, target, claim),
+        _relaxation_residuals(problem, target, approach, claim),
         _number_residuals(problem, claim, reference),
         _motion_residuals(problem, target, claim, reference),
     )
@@ -139,6 +141,51 @@ def _claim(approach: Approach) -> _Claim | None:
     return None if any(value is None for value in values.values()) else _Claim(**values)
 
 
+def thinning_placement(
+    problem: Problem, target: Target, tool_side: int, thinning: Array
+) -> Placement:
+    """How a thinning posture stands to its target, recomputed from the posture, shape (joints,)."""
+    pose = forward_kinematics(problem.robot, problem.mounted_tool, np.asarray(thinning))
+    frame = approach_frame(target.position_m, target.branch_direction)
+    return placement(frame, np.asarray(target.position_m), tool_side, pose)
+
+
+def _wanted_pose(problem: Problem, target: Target, claim: _Claim) -> tuple[Array, Array]:
+    """Where the tool has to be at thinning, shape (3,), and its axes, shape (3, 3).
+
+    At the claimed approach angle; strike and swing are those of the thinning posture, cut to what
+    is allowed. Without relaxations that leaves the target itself and the unrelaxed axes.
+    """
+    options = problem.options
+    seen = thinning_placement(problem, target, claim.tool_side, claim.path_joints[-1])
+    frame = approach_frame(target.position_m, target.branch_direction)
+    swing = rotation(shortened(seen.swing_rad, options.tilt_tolerance_rad))
+    axes = swing @ frame.axes(claim.approach_angle_rad, claim.tool_side)
+    strike = min(max(seen.strike_m, 0.0), options.strike_zone_m)
+    return np.asarray(target.position_m) + strike * axes[:, 2], axes
+
+
+def _relaxation_residuals(
+    problem: Problem, target: Target, approach: Approach, claim: _Claim
+) -> Iterator[Residual]:
+    """Claims of how much of the relaxations is used: there where one is on, true, and only there.
+
+    That no more is used than allowed is in the residuals of the path.
+    """
+    used = thinning_placement(problem, target, claim.tool_side, claim.thinning_joints)
+    options = problem.options
+    for name, claimed, truth, on, allowed in (
+        ("strike_claim_m", approach.strike_m, used.strike_m, options.strike_zone_m > 0,
+         POSITION_ERROR_M),
+        ("tilt_claim_rad", approach.tilt_rad, used.tilt_rad, options.tilt_tolerance_rad > 0,
+         AXIS_ERROR_RAD),
+    ):  # fmt: skip
+        if claimed is None or not on:
+            yield Residual(name, float((claimed is not None) != on), 0.0)
+        else:
+            yield Residual(name, abs(claimed - truth), allowed)
+
+
 def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
     n = len(problem.robot.joints)
     trajectory, transfer = claim.trajectory, claim.transfer
@@ -167,11 +214,10 @@ def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
 def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
     robot, tool, options = problem.robot, problem.mounted_tool, problem.options
     rows = np.asarray(claim.path_joints)
-    frame = approach_frame(target.position_m, target.branch_direction)
-    axes = frame.axes(claim.approach_angle_rad, claim.tool_side)
+    place, axes = _wanted_pose(problem, target, claim)
     poses = forward_kinematics(robot, tool, rows)
     retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
-    places = np.asarray(target.position_m) - np.outer(retreats, axes[:, 2])
+    places = place - np.outer(retreats, axes[:, 2])
     position_errors = np.linalg.norm(poses[:, :3, 3] - places, axis=1)
     yield Residual("path_position_m", float(position_errors.max()), POSITION_ERROR_M)
     axis_errors = np.linalg.norm(poses[:, :3, :3] - axes, axis=1)
@@ -253,11 +299,10 @@ def _motion_residuals(
     yield Residual("dwell_s", abs(waited - problem.options.dwell_s), SAME_POSTURE_RAD)
     still = float(np.abs(dwell_rows - thinning).max())
     yield Residual("dwell_moves_rad", still, SAME_POSTURE_RAD)
-    frame = approach_frame(target.position_m, target.branch_direction)
-    direction = frame.direction(claim.approach_angle_rad)
+    place, axes = _wanted_pose(problem, target, claim)
     for name in ("cut_in", "retreat"):
         _, rows = segment_rows(trajectory, name)
-        deviation = line_deviation(robot, problem.mounted_tool, rows, target.position_m, direction)
+        deviation = line_deviation(robot, problem.mounted_tool, rows, place, axes[:, 2])
         yield Residual(f"{name}_deviation_m", deviation, problem.options.straightness_m)
         claimed = deviation - claim.path_deviation_m
         yield Residual(f"{name}_deviation_claim_m", claimed, POSITION_ERROR_M)

@@ -25,6 +25,8 @@ class ResolvedOptions(BaseModel):
     samples: int
     seed: int
     certify: bool
+    nlp_backend: str
+    qp_solver: str
     include: list[str]
 
 
@@ -79,6 +81,14 @@ class ApproachAnswer(BaseModel):
     approach_angle_rad: float | MISSING = MISSING
     tool_side: int | MISSING = MISSING
     branch: int | MISSING = MISSING
+    strike_m: float | MISSING = Field(
+        default=MISSING,
+        description="tool centre point beyond the target along z; with a strike zone only",
+    )
+    tilt_rad: float | MISSING = Field(
+        default=MISSING,
+        description="between the tool's y axis and the branch; with a tilt tolerance only",
+    )
     thinning_joints: list[float] | MISSING = MISSING
     standby_joints: list[float] | MISSING = MISSING
     path_joints: list[list[float]] | MISSING = Field(

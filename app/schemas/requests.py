@@ -62,6 +62,8 @@ class OptionsBody(StrictBody):
     samples: int | MISSING = MISSING
     seed: int | MISSING = MISSING
     certify: bool | MISSING = MISSING
+    nlp_backend: str | MISSING = MISSING
+    qp_solver: str | MISSING = MISSING
     include: Annotated[list[str], Field(fail_fast=True)] | MISSING = Field(
         default=MISSING,
         description="any of path, transfer, trajectory; default: all up to 50 targets, then path",

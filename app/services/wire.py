@@ -125,6 +125,8 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
         approach_angle_rad=_optional(approach.approach_angle_rad),
         tool_side=None if approach.tool_side is None else int(approach.tool_side),
         branch=None if approach.branch is None else int(approach.branch),
+        strike_m=_optional(approach.strike_m),
+        tilt_rad=_optional(approach.tilt_rad),
         thinning_joints=_numbers(approach.thinning_joints),
         standby_joints=_numbers(approach.standby_joints),
         path_joints=_numbers(path),

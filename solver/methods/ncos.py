@@ -3,57 +3,159 @@
 Source: S 3.3 for the idea; the programme is in `solver.nlp.formulation`.
 """
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from solver.approach.frame import signed_angle
+from solver.approach.relaxation import placement
 from solver.approach.task import ApproachTask
+from solver.cut_in import retreat_rows
 from solver.effort import posture_effort
+from solver.kinematics.forward import forward_kinematics
 from solver.methods.candidate import Candidate
 from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, why_none
-from solver.nlp.backends import ProgrammeResult, solve_programme
+from solver.nlp.backends import solve_instance
+from solver.nlp.formulation import build_programme
+from solver.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
+from solver.nlp.relaxed import solve_relaxed
+from solver.nlp.starts import corners, nearest_starts, start_at
+from solver.robots.model import Array
 from solver.solution import Reason
+from solver.tolerances import RELAXED_NEAREST, RELAXED_STARTS
+
+SOLVED = "solved"
+AS_GOOD = "solved_warm_start_as_good"
 
 
-def solve_ncos(task: ApproachTask) -> Candidate | Reason:
+def solve_ncos(
+    task: ApproachTask, next_thinning: Sequence[float] | None = None
+) -> Candidate | Reason:
     """The programme's approach, or its warm start where the programme fails or is not better.
 
-    The optimum is polished: an interior-point solver ends within its tolerance of limits and
-    constraints, so its approach angle is put back on the closed form, which meets them exactly, and
-    into the warm start's feasible arc. The answer is therefore never dearer than the warm start,
-    and `status` says which of the two it is.
+    The optimum is polished: a programme ends within its tolerance of limits and constraints, so its
+    answer is put back on the closed form, which meets them exactly. The answer is therefore never
+    dearer than the warm start, and `status` says which of the two it is.
+
+    Args:
+        task: the target's task.
+        next_thinning: the next target's thinning posture; where given, the travel to it from this
+            standby counts too. `Candidate.effort` stays that of this thinning posture.
     """
+    coupling = _Coupling(task, next_thinning)
+    if task.options.strike_zone_m > 0 or task.options.tilt_tolerance_rad > 0:
+        return _solve_with_relaxations(task, coupling)
     warm_start = best_on_arcs(task)
     if warm_start is None:
         return why_none(task)
-    result = solve_programme(task, warm_start)
-    kept = Candidate(
-        signed_angle(warm_start.angle_rad),
-        warm_start.arc.tool_side,
-        warm_start.arc.branch,
-        task.thinning_joints(warm_start.angle_rad, warm_start.arc.tool_side, warm_start.arc.branch),
-        warm_start.effort,
-        result.iterations,
-        f"warm_start_after_{result.status}",
-    )
+    result = solve_on_arc(task, warm_start, next_thinning)
+    kept = _at_angle(task, warm_start, warm_start.angle_rad)
     if not result.success:
-        return kept
-    angle, thinning = _polish(task, warm_start, result)
-    cost = posture_effort(thinning, task.reference, task.joint_weights, task.options.norm)
-    if cost > warm_start.effort:
-        return replace(kept, status="solved_warm_start_as_good")
-    return replace(
-        kept,
-        approach_angle_rad=signed_angle(angle),
-        thinning_joints=thinning,
-        effort=cost,
-        status="solved",
-    )
-
-
-def _polish(
-    task: ApproachTask, warm_start: ArcOptimum, result: ProgrammeResult
-) -> tuple[float, tuple[float, ...]]:
-    """The programme's angle inside the arc, and the exact thinning posture there."""
+        return _told(kept, result.iterations, f"warm_start_after_{result.status}")
     arc = warm_start.arc
-    angle = min(max(result.approach_angle_rad, arc.lower_rad), arc.upper_rad)
-    return angle, task.thinning_joints(angle, arc.tool_side, arc.branch)
+    angle = min(max(float(result.x[2 * len(task.robot.joints)]), arc.lower_rad), arc.upper_rad)
+    found = _at_angle(task, warm_start, angle)
+    if coupling.cost(found) > coupling.cost(kept):
+        return _told(kept, result.iterations, AS_GOOD)
+    return _told(found, result.iterations, SOLVED)
+
+
+def solve_on_arc(
+    task: ApproachTask, warm_start: ArcOptimum, next_thinning: Sequence[float] | None = None
+) -> ProgrammeResult:
+    """The unrelaxed programme from a warm start, its approach angle kept on that start's arc."""
+    arc, ends = warm_start.arc, np.array([task.options.standoff_m, 0.0])
+    rows = task.postures(warm_start.angle_rad, arc.tool_side, arc.branch, ends)
+    start = Start(
+        arc.tool_side,
+        warm_start.angle_rad,
+        arc.lower_rad,
+        arc.upper_rad,
+        rows[::-1],
+        ends[::-1],
+        strike_m=0.0,
+        swing_rad=np.zeros(3),
+    )
+    shape = replace(shape_of(task, coupled=next_thinning is not None), strike=False, tilt=False)
+    programme = build_programme(task.robot, shape)
+    instance = make_instance(task, programme, start, next_thinning)
+    return solve_instance(task.robot, instance, task.options)
+
+
+def _solve_with_relaxations(task: ApproachTask, coupling: "_Coupling") -> Candidate | Reason:
+    """The cheapest of the feasible corners and of what the programme makes of a few starts."""
+    offers = [
+        _from_thinning(task, corner.tool_side, corner.branch, corner.thinning)
+        for corner in corners(task)
+    ]
+    offers.sort(key=coupling.cost)
+    starts = [
+        start_at(task, offer.tool_side, offer.branch or 0, np.asarray(offer.thinning_joints))
+        for offer in offers[:RELAXED_STARTS]
+    ] or nearest_starts(task, RELAXED_NEAREST)
+    iterations, statuses = 0, []
+    kept = offers[0] if offers else None
+    best = None
+    for start in starts:
+        answer = solve_relaxed(task, start, coupling.next_thinning)
+        iterations += answer.iterations
+        statuses.append(answer.status)
+        if answer.thinning is None:
+            continue
+        offer = _from_thinning(task, answer.tool_side, answer.branch, answer.thinning)
+        if best is None or coupling.cost(offer) < coupling.cost(best):
+            best = offer
+    if best is not None and (kept is None or coupling.cost(best) <= coupling.cost(kept)):
+        return _told(best, iterations, SOLVED)
+    if kept is not None:
+        status = AS_GOOD if best is not None else f"warm_start_after_{statuses[0]}"
+        return _told(kept, iterations, status)
+    reason = why_none(task)
+    more = f"{reason.detail}; neither did the relaxed programme find one from {len(starts)} starts"
+    return replace(reason, detail=more)
+
+
+@dataclass(frozen=True)
+class _Coupling:
+    """What an approach costs, with the travel to a next target where there is one."""
+
+    task: ApproachTask
+    next_thinning: Sequence[float] | None
+
+    def cost(self, candidate: Candidate) -> float:
+        """The effort of thinning, and from standby to the next thinning posture."""
+        if self.next_thinning is None:
+            return candidate.effort
+        task = self.task
+        ends = np.array([task.options.standoff_m, 0.0])
+        standby = retreat_rows(
+            task.robot, task.tool, candidate.thinning_joints, candidate.branch, ends
+        )[0]
+        return candidate.effort + posture_effort(
+            self.next_thinning, standby, task.joint_weights, task.options.norm
+        )
+
+
+def _at_angle(task: ApproachTask, warm_start: ArcOptimum, angle: float) -> Candidate:
+    arc = warm_start.arc
+    thinning = task.thinning_joints(angle, arc.tool_side, arc.branch)
+    return _candidate(task, angle, arc.tool_side, arc.branch, thinning)
+
+
+def _from_thinning(task: ApproachTask, tool_side: int, branch: int, thinning: Array) -> Candidate:
+    pose = forward_kinematics(task.robot, task.tool, thinning)
+    seen = placement(task.frame, np.asarray(task.target.position_m), tool_side, pose)
+    joints = tuple(float(value) for value in thinning)
+    return _candidate(task, seen.approach_angle_rad, tool_side, branch, joints)
+
+
+def _candidate(
+    task: ApproachTask, angle: float, tool_side: int, branch: int, thinning: Sequence[float]
+) -> Candidate:
+    cost = posture_effort(thinning, task.reference, task.joint_weights, task.options.norm)
+    return Candidate(signed_angle(angle), tool_side, branch, thinning, cost, 0, "")
+
+
+def _told(candidate: Candidate, iterations: int, status: str) -> Candidate:
+    return replace(candidate, iterations=iterations, status=status)

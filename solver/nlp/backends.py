@@ -1,94 +1,35 @@
-"""IPOPT on the task definition's programme, from a warm start."""
+"""The backends: what solves a programme, one row each."""
 
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final, Protocol
 
-import casadi as ca
-import numpy as np
-
-from solver.approach.task import ApproachTask
-from solver.methods.semi_analytic import ArcOptimum
-from solver.nlp.formulation import Programme, build_programme
+from solver.nlp.instance import Instance, ProgrammeResult
+from solver.nlp.ipopt import solve_by_ipopt
+from solver.nlp.sqp import solve_by_sqp
+from solver.problem import Options
 from solver.robots.model import Robot
-from solver.tolerances import NLP_BARRIER, NLP_BOUND_PUSH, NLP_ITERATIONS, NLP_TOLERANCE
 
 
-@dataclass(frozen=True)
-class ProgrammeResult:
-    """What the backend ended with; nothing in it is verified."""
+class Backend(Protocol):
+    """Solves a programme from its start; no answer of it is verified yet."""
 
-    success: bool
-    status: str
-    iterations: int
-    approach_angle_rad: float
+    def __call__(self, robot: Robot, instance: Instance, options: Options) -> ProgrammeResult:
+        """The result, its budget counted in iterations; failures are a status, never raised."""
+        ...
 
 
-@dataclass(frozen=True)
-class _Solver:
-    programme: Programme
-    function: Any
+def _sqp(robot: Robot, instance: Instance, options: Options) -> ProgrammeResult:
+    return solve_by_sqp(robot, instance, options.qp_solver)
 
 
-@lru_cache(maxsize=16)
-def _solver(robot: Robot, norm: str) -> _Solver:
-    """IPOPT on a robot's programme, built once in a process."""
-    programme = build_programme(robot, norm)
-    options: dict[str, Any] = {
-        "print_time": False,
-        "error_on_fail": False,
-        "calc_lam_p": False,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "tol": NLP_TOLERANCE,
-            "max_iter": NLP_ITERATIONS,
-            "mu_init": NLP_BARRIER,
-            "bound_push": NLP_BOUND_PUSH,
-            "bound_frac": NLP_BOUND_PUSH,
-            "bound_relax_factor": 0.0,
-        },
-    }
-    return _Solver(programme, ca.nlpsol("task_definition", "ipopt", programme.nlp, options))
+def _ipopt(robot: Robot, instance: Instance, options: Options) -> ProgrammeResult:
+    return solve_by_ipopt(robot, instance)
 
 
-def solve_programme(task: ApproachTask, warm_start: ArcOptimum) -> ProgrammeResult:
-    """Solves the task's programme from the closed form's optimum, on that optimum's arc."""
-    solver = _solver(task.robot, task.options.norm)
-    arc = warm_start.arc
-    ends = np.array([task.options.standoff_m, 0.0])
-    standby, thinning = task.postures(warm_start.angle_rad, arc.tool_side, arc.branch, ends)
-    reference, slacks = np.asarray(task.reference), solver.programme.slacks
-    frame = task.frame
-    x0 = [thinning, standby, np.array([warm_start.angle_rad])]
-    lower = [task.lower, task.lower, np.array([arc.lower_rad])]
-    upper = [task.upper, task.upper, np.array([arc.upper_rad])]
-    if slacks:
-        x0.append(np.abs(thinning - reference))
-        lower.append(np.zeros(slacks))
-        upper.append(np.full(slacks, np.inf))
-    parameters = np.concatenate(
-        [
-            np.asarray(task.target.position_m, dtype=np.float64),
-            arc.tool_side * frame.branch,
-            frame.outward,
-            frame.sideways,
-            reference,
-            task.joint_weights,
-            [task.options.standoff_m, task.tool.length_m],
-        ]
-    )
-    equalities = solver.programme.equalities
-    answer = solver.function(
-        x0=np.concatenate(x0),
-        p=parameters,
-        lbx=np.concatenate(lower),
-        ubx=np.concatenate(upper),
-        lbg=np.zeros(equalities + 2 * slacks),
-        ubg=np.concatenate([np.zeros(equalities), np.full(2 * slacks, np.inf)]),
-    )
-    stats = solver.function.stats()
-    angle = float(answer["x"][2 * len(task.robot.joints)])
-    return ProgrammeResult(
-        bool(stats["success"]), str(stats["return_status"]), int(stats["iter_count"]), angle
-    )
+BACKENDS: Final[Mapping[str, Backend]] = MappingProxyType({"sqp": _sqp, "ipopt": _ipopt})
+
+
+def solve_instance(robot: Robot, instance: Instance, options: Options) -> ProgrammeResult:
+    """Solves a programme by the backend that the options name."""
+    return BACKENDS[options.nlp_backend](robot, instance, options)

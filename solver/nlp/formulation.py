@@ -1,106 +1,213 @@
-"""The task definition as a nonlinear programme, built once for a robot and fed parameters.
+"""The task definition as a nonlinear programme, built once for a robot and a shape, fed parameters.
 
-Variables    q        thinning posture          (6)
-             q_s      standby posture           (6)
-             phi      approach angle            (1)
-             t        effort of each joint      (6), l1 only: t >= |q - reference|
+Variables    q_0, q_1   thinning and standby posture             (n each)
+             q_r        posture at a further row of the cut-in   (n each), `Shape.rows` of them
+             phi        approach angle                           (1)
+             sigma      share of the strike zone                 (1), 0 to 1, `Shape.strike`
+             eta        swing, shares of the tolerance           (2), `Shape.tilt`
+             t          travel of each joint                     (n), l1: t >= |q_0 - reference|
+             t'         travel to the next target                (n), l1 and `Shape.coupled`
 Parameters   p, y, u, v   target, tool y axis, approach direction at 0 and at a quarter turn
-             reference, weights, standoff, tool length
-Minimise     sum w t  (l1)   or   sum w (q - reference)^2  (l2)
-Subject to   position(q)   = p                 axes(q)   = [y x z, y, z](phi)
-             position(q_s) = p - standoff z    axes(q_s) = the same
-             limits of q and q_s, phi inside the warm start's arc
+             reference, next thinning posture, weights, retreat of each posture, tool length,
+             strike zone, half-angle tangent of the tilt tolerance
+Minimise     sum w t  (+ sum w t')      (l1)
+             sum w (q_0 - reference)^2  (+ sum w (next - q_1)^2)      (l2)
+Subject to   position(q_k) = p + (strike zone sigma - retreat_k) z      axes(q_k) = [y' x z, y', z]
+             |eta| <= 1, limits of every posture, bounds of phi
+
+The swing is the smallest rotation that takes b to the leaning y axis: its rotation vector is normal
+to b. S(g) turns by 2 atan |g| about g = tan(tolerance / 2) (eta_1 u + eta_2 v), a rational
+function, smooth at zero. z = S z(phi) and y' = S y, so phi keeps its meaning.
+
+A relaxation that is off has no variable: the unrelaxed programme is as small as if there were none.
 """
 
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 
-from solver.robots.model import Robot
+from solver.robots.model import Joint, Robot
 from solver.tolerances import EXACT_ZERO
+
+POSE_EQUATIONS = 6
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What decides a programme's variables, beside the robot.
+
+    Attributes:
+        norm: "l1" or "l2".
+        strike: the target may lie along the forks.
+        tilt: the tool's y axis may lean off the branch.
+        rows: further postures of the cut-in that have to be feasible.
+        coupled: the travel from this standby to a next thinning posture counts too.
+    """
+
+    norm: str
+    strike: bool = False
+    tilt: bool = False
+    rows: int = 0
+    coupled: bool = False
 
 
 @dataclass(frozen=True)
 class Programme:
-    """A CasADi programme: what `casadi.nlpsol` takes, and the sizes of its parts.
+    """A CasADi programme: expressions only, so it is shared by all tools and backends.
 
     Attributes:
-        nlp: symbols x, p and expressions f, g.
+        shape: what it was built for.
+        joints: joints of the robot, n.
+        nlp: symbols x, p and expressions f, g, as `casadi.nlpsol` takes them.
         equalities: the first this many constraints are 0; the others are not negative.
-        slacks: how many effort variables stand at the end of x.
+        inequalities: how many others there are.
+        kinematic: how many variables stand before the slacks of the l1 norm.
+        slack_of: for each slack, the index of the joint in x whose travel it bounds.
     """
 
-    nlp: dict[str, ca.SX]
+    shape: Shape
+    joints: int
+    nlp: dict[str, Any]
     equalities: int
-    slacks: int
+    inequalities: int
+    kinematic: int
+    slack_of: NDArray[np.intp]
+
+    @property
+    def postures(self) -> int:
+        """How many postures stand at the beginning of x."""
+        return 2 + self.shape.rows
+
+    @property
+    def angle(self) -> int:
+        """Index of the approach angle in x; the relaxations follow it."""
+        return self.postures * self.joints
+
+    @property
+    def slacks(self) -> int:
+        """How many slacks stand at the end of x."""
+        return len(self.slack_of)
 
 
-@lru_cache(maxsize=16)
-def build_programme(robot: Robot, norm: str) -> Programme:
-    """The programme of a robot for one norm; expressions only, so it is shared by all tools."""
-    n = len(robot.joints)
-    q, q_standby, phi = ca.SX.sym("q", n), ca.SX.sym("q_s", n), ca.SX.sym("phi")
+@lru_cache(maxsize=64)
+def build_programme(robot: Robot, shape: Shape) -> Programme:
+    """The programme of a robot for one shape."""
+    n, postures = len(robot.joints), 2 + shape.rows
+    q = [ca.SX.sym(f"q_{k}", n) for k in range(postures)]
+    phi, sigma, eta = ca.SX.sym("phi"), ca.SX.sym("sigma"), ca.SX.sym("eta", 2)
     position, y_axis = ca.SX.sym("p", 3), ca.SX.sym("y", 3)
     outward, sideways = ca.SX.sym("u", 3), ca.SX.sym("v", 3)
-    reference, weights = ca.SX.sym("reference", n), ca.SX.sym("weights", n)
-    standoff, tool_length = ca.SX.sym("standoff"), ca.SX.sym("tool_length")
+    reference, following = ca.SX.sym("reference", n), ca.SX.sym("next", n)
+    weights, retreats = ca.SX.sym("weights", n), ca.SX.sym("retreats", postures)
+    tool_length, zone = ca.SX.sym("tool_length"), ca.SX.sym("zone")
+    half_tangent = ca.SX.sym("half_tangent")
 
+    variables, inequalities = [*q, phi], []
     z_axis = ca.cos(phi) * outward + ca.sin(phi) * sideways
-    axes = ca.horzcat(ca.cross(y_axis, z_axis), y_axis, z_axis)
+    beyond = ca.SX(0.0)
+    if shape.strike:
+        variables.append(sigma)
+        beyond = zone * sigma
+    if shape.tilt:
+        variables.append(eta)
+        swing = half_tangent * (eta[0] * outward + eta[1] * sideways)
+        y_axis_used, z_axis = turned(y_axis, swing), turned(z_axis, swing)
+        inequalities.append(1.0 - ca.dot(eta, eta))
+    else:
+        y_axis_used = y_axis
+    axes = ca.horzcat(ca.cross(y_axis_used, z_axis), y_axis_used, z_axis)
     equalities = []
-    for posture, retreat in ((q, 0.0), (q_standby, standoff)):
+    for k, posture in enumerate(q):
         place, turn = symbolic_pose(robot, posture, tool_length)
-        equalities.append(place - (position - retreat * z_axis))
+        equalities.append(place - (position + (beyond - retreats[k]) * z_axis))
         equalities.append(axes_error(turn, axes))
 
-    change = q - reference
-    variables, inequalities, slacks = [q, q_standby, phi], [], 0
-    if norm == "l1":
-        slack = ca.SX.sym("t", n)
-        variables.append(slack)
-        inequalities += [slack - change, slack + change]
-        cost, slacks = ca.dot(weights, slack), n
-    else:
-        cost = ca.dot(weights, change**2)
+    travels = [(0, reference)] + ([(1, following)] if shape.coupled else [])
+    kinematic = sum(part.numel() for part in variables)
+    cost, slack_of = ca.SX(0.0), list[int]()
+    for k, other in travels:
+        change = q[k] - other
+        if shape.norm == "l1":
+            slack = ca.SX.sym("t", n)
+            variables.append(slack)
+            inequalities += [slack - change, slack + change]
+            cost = cost + ca.dot(weights, slack)
+            slack_of += range(k * n, (k + 1) * n)
+        else:
+            cost = cost + ca.dot(weights, change**2)
 
-    parameters = ca.vertcat(
-        position, y_axis, outward, sideways, reference, weights, standoff, tool_length
-    )
+    parameters = [position, y_axis, outward, sideways, reference, following, weights, retreats]
+    parameters += [tool_length, zone, half_tangent]
     nlp = {
         "x": ca.vertcat(*variables),
-        "p": parameters,
+        "p": ca.vertcat(*parameters),
         "f": cost,
         "g": ca.vertcat(*equalities, *inequalities),
     }
-    return Programme(nlp, equalities=12, slacks=slacks)
+    count = POSE_EQUATIONS * postures
+    return Programme(
+        shape,
+        n,
+        nlp,
+        equalities=count,
+        inequalities=nlp["g"].numel() - count,
+        kinematic=kinematic,
+        slack_of=np.array(slack_of, dtype=np.intp),
+    )
 
 
-def symbolic_pose(robot: Robot, q: ca.SX, tool_length: ca.SX) -> tuple[ca.SX, ca.SX]:
+def symbolic_pose(robot: Robot, q: Any, tool_length: Any) -> tuple[Any, Any]:
     """Tool centre point (3) and axes (3, 3) as expressions of q (T equation 1)."""
     place, turn = ca.SX.zeros(3), ca.SX.eye(3)
     last = len(robot.joints) - 1
     for i, joint in enumerate(robot.joints):
-        cos, sin = ca.cos(q[i] + joint.offset_rad), ca.sin(q[i] + joint.offset_rad)
-        cos_twist, sin_twist = _twist(joint.alpha_rad)
-        length = joint.d_m + (tool_length if i == last else 0.0)
-        place = place + turn @ ca.vertcat(joint.a_m * cos, joint.a_m * sin, length)
-        rows = (
-            ca.horzcat(cos, -sin * cos_twist, sin * sin_twist),
-            ca.horzcat(sin, cos * cos_twist, -cos * sin_twist),
-            ca.horzcat(0.0, sin_twist, cos_twist),
-        )
-        turn = turn @ ca.vertcat(*rows)
+        offset, link = symbolic_link(joint, q[i], tool_length if i == last else 0.0)
+        place, turn = place + turn @ offset, turn @ link
     return place, turn
 
 
-def axes_error(turn: ca.SX, wanted: ca.SX) -> ca.SX:
-    """Half the sum of cross products of like axes: the small rotation between two frames (3)."""
-    error = ca.SX.zeros(3)
+def symbolic_link(joint: Joint, value: Any, further: Any) -> tuple[Any, Any]:
+    """Origin (3) and axes (3, 3) of a joint's frame in the frame before it.
+
+    The one place that knows which Denavit-Hartenberg parameter a joint's value adds to.
+
+    Args:
+        joint: the joint and its link.
+        value: its expression [rad].
+        further: length along the joint's axis beyond the link's own, of the tool [m].
+    """
+    angle, length = value + joint.offset_rad, joint.d_m + further
+    cos, sin = ca.cos(angle), ca.sin(angle)
+    cos_twist, sin_twist = _twist(joint.alpha_rad)
+    rows = (
+        ca.horzcat(cos, -sin * cos_twist, sin * sin_twist),
+        ca.horzcat(sin, cos * cos_twist, -cos * sin_twist),
+        ca.horzcat(0.0, sin_twist, cos_twist),
+    )
+    return ca.vertcat(joint.a_m * cos, joint.a_m * sin, length), ca.vertcat(*rows)
+
+
+def turned(vector: Any, gibbs: Any) -> Any:
+    """A vector (3) turned about `gibbs` (3) by twice the arc tangent of its length."""
+    across = ca.cross(gibbs, vector)
+    return vector + 2 / (1 + ca.dot(gibbs, gibbs)) * (across + ca.cross(gibbs, across))
+
+
+def axes_error(turn: Any, wanted: Any) -> Any:
+    """The rotation between two frames, 2 tan(angle / 2) along its axis (3).
+
+    The sum of the cross products of like axes alone, 2 sin(angle), is zero at half a turn too.
+    """
+    across, along = ca.SX.zeros(3), ca.SX(1.0)
     for i in range(3):
-        error = error + ca.cross(turn[:, i], wanted[:, i]) / 2
-    return error
+        across = across + ca.cross(turn[:, i], wanted[:, i])
+        along = along + ca.dot(turn[:, i], wanted[:, i])
+    return 2 * across / along
 
 
 def _twist(alpha: float) -> tuple[float, float]:

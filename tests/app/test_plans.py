@@ -141,8 +141,8 @@ def test_options_are_all_known_to_the_solver(request_body: Body) -> None:
         "method": "ssas", "order": "independent", "norm": "l2", "weights": "uniform",
         "joint_weights": [1, 2, 3, 4, 5, 6], "standoff_m": 0.03, "path_points": 11,
         "straightness_m": 0.001, "dwell_s": 1, "limit_margin_rad": 0.01, "symmetric_tool": True,
-        "strike_zone_m": 0, "tilt_tolerance_rad": 0, "samples": 20, "seed": 3, "certify": False,
-        "include": ["path"],
+        "strike_zone_m": 0.01, "tilt_tolerance_rad": 0.1, "samples": 20, "seed": 3,
+        "certify": False, "nlp_backend": "ipopt", "qp_solver": "osqp", "include": ["path"],
     }  # fmt: skip
     request_body["options"] = given
     problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))

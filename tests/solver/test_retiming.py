@@ -65,6 +65,17 @@ def test_order_independent_becomes_one_continuous_motion(tabletop: Robot) -> Non
         np.testing.assert_allclose(approach.trajectory.joints[-1], before, rtol=0, atol=1e-9)
 
 
+def test_relaxed_approaches_are_rebuilt(tabletop: Robot) -> None:
+    plan = solve(data_set_3(tabletop, strike_zone_m=0.02, tilt_tolerance_rad=0.15))
+    assert plan.planned == 5
+    for before, after in zip(plan.approaches, retime(plan.problem, chosen(plan)), strict=True):
+        assert after.status == "planned"
+        assert (after.strike_m, after.tilt_rad) == (before.strike_m, before.tilt_rad)
+        assert before.trajectory is not None
+        assert after.trajectory is not None
+        np.testing.assert_allclose(after.trajectory.joints, before.trajectory.joints, atol=1e-9)
+
+
 def test_another_order_is_continuous_too(tabletop: Robot) -> None:
     plan = solve(data_set_3(tabletop, method="ssas"))
     again = retime(plan.problem, chosen(plan)[::-1])

@@ -134,3 +134,103 @@ def test_only_the_verifier_gives_the_status_planned() -> None:
     sources = Path(solver.__file__).parent.rglob("*.py")
     users = {file.name for file in sources if "status=PLANNED" in file.read_text()}
     assert users == {"verification.py"}
+
+
+RELAXED: dict[str, Any] = {"strike_zone_m": 0.02, "tilt_tolerance_rad": 0.15}
+
+
+@pytest.fixture(scope="module")
+def relaxed() -> Plan:
+    options = Options(order="independent", **RELAXED)
+    return solve(
+        Problem(load_robot("tabletop"), random_targets(seed=33, count=16), options=options)
+    )
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_relaxed_plans_verify_by_every_method(tabletop: Robot, method: str) -> None:
+    """Those without relaxations solve the unrelaxed task, and say that they use nothing."""
+    plan = solve(data_set_3(tabletop, method=method, **RELAXED))
+    results = verify_plan(plan)
+    assert len(results) == plan.planned > 0
+    for approach in plan.approaches:
+        if approach.status != "planned":
+            continue
+        assert results[approach.target_id].accepted
+        assert approach.strike_m is not None
+        assert approach.tilt_rad is not None
+        if method != "ncos":
+            assert abs(approach.strike_m) < 1e-9
+            assert approach.tilt_rad < 1e-9
+
+
+def test_relaxed_answers_use_the_relaxations_and_only_what_is_on_is_told(
+    relaxed: Plan, plan: Plan
+) -> None:
+    assert relaxed.planned >= 3
+    used = [(a.strike_m or 0.0, a.tilt_rad or 0.0) for a in relaxed.approaches]
+    assert max(strike for strike, _ in used) > 1e-3
+    assert max(tilt for _, tilt in used) > 1e-2
+    assert all(a.strike_m is None and a.tilt_rad is None for a in plan.approaches)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "residual"),
+    [
+        (_nudged("strike_m", (), 2e-6), "strike_claim_m"),
+        (_nudged("strike_m", (), np.nan), "strike_claim_m"),
+        (_nudged("tilt_rad", (), -2e-6), "tilt_claim_rad"),
+        (lambda a: replace(a, strike_m=None), "strike_claim_m"),
+        (lambda a: replace(a, tilt_rad=None), "tilt_claim_rad"),
+        (_nudged("approach_angle_rad", (), 1e-5), "path_axes_rad"),
+        (_nudged("path_joints", (7, 2), 1e-5), "path_position_m"),
+        (_nudged("path_joints", (7, 5), 1e-5), "path_axes_rad"),
+    ],
+)
+def test_spoiled_relaxed_answers_do_not_verify(
+    relaxed: Plan, spoil: Callable[[Approach], Approach], residual: str
+) -> None:
+    approach = next(a for a in relaxed.approaches if a.status == "planned")
+    assert verify(relaxed.problem, approach, relaxed.problem.start).accepted
+    verification = verify(relaxed.problem, spoil(approach), relaxed.problem.start)
+    assert residual in [failure.name for failure in verification.failures]
+
+
+@pytest.mark.parametrize(
+    ("options", "residual"),
+    [
+        ({"strike_zone_m": 0.0}, "path_position_m"),
+        ({"tilt_tolerance_rad": 0.0}, "path_axes_rad"),
+        ({"strike_zone_m": "a little less"}, "path_position_m"),
+        ({"tilt_tolerance_rad": "a little less"}, "path_axes_rad"),
+    ],
+)
+def test_more_than_is_allowed_does_not_verify(
+    relaxed: Plan, options: dict[str, Any], residual: str
+) -> None:
+    """An answer that used its relaxations is none where there are less of them."""
+    used = {
+        "strike_zone_m": lambda a: (a.strike_m or 0.0) - 1e-5,
+        "tilt_tolerance_rad": lambda a: (a.tilt_rad or 0.0) - 1e-5,
+    }
+    checked = 0
+    start = relaxed.problem.start
+    for approach in relaxed.approaches:
+        (name, value), *_ = options.items()
+        less = used[name](approach) if value == "a little less" else value
+        if approach.status == "planned" and used[name](approach) > 1e-4:
+            change: dict[str, Any] = {name: less}
+            strict = replace(relaxed.problem.options, **change)
+            problem = replace(relaxed.problem, options=strict)
+            assert verify(relaxed.problem, approach, start).accepted
+            failures = verify(problem, approach, start).failures
+            assert residual in [failure.name for failure in failures]
+            checked += 1
+    assert checked
+
+
+def test_claims_without_the_option_do_not_verify(plan: Plan) -> None:
+    for field in ("strike_m", "tilt_rad"):
+        claim: dict[str, Any] = {field: 0.0}
+        spoiled = replace(plan.approaches[0], **claim)
+        assert not verify(plan.problem, spoiled, plan.problem.start).accepted
