@@ -61,7 +61,9 @@ class OptionsBody(StrictBody):
     tilt_tolerance_rad: float | MISSING = MISSING
     samples: int | MISSING = MISSING
     seed: int | MISSING = MISSING
-    certify: bool | MISSING = MISSING
+    certify: bool | MISSING = Field(
+        default=MISSING, description="add a proven lower bound on each effort"
+    )
     include: Annotated[list[str], Field(fail_fast=True)] | MISSING = Field(
         default=MISSING,
         description="any of path, transfer, trajectory; default: all up to 50 targets, then path",

@@ -45,7 +45,6 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
         (Options(standoff_m=0.0), "#/options/standoff_m"),
         (Options(strike_zone_m=0.01), "#/options/strike_zone_m"),
         (Options(tilt_tolerance_rad=0.1), "#/options/tilt_tolerance_rad"),
-        (Options(certify=True), "#/options/certify"),
         (Options(samples=0), "#/options/samples"),
         (Options(joint_weights=(1, 1)), "#/options/joint_weights"),
         (Options(joint_weights=(-1, 1, 1, 1, 1, 1)), "#/options/joint_weights"),
