@@ -13,6 +13,7 @@ from solver import Options, Problem, Target, load_robot
 from solver.approach.certificate import Certificate, certify_task
 from solver.approach.task import ApproachTask, approach_task
 from solver.methods.semi_analytic import best_on_arcs
+from solver.tolerances import CERTIFICATE_GAP
 
 QUANTILES = (0.5, 0.9, 0.99, 1.0)
 
@@ -35,7 +36,7 @@ def certificates(seed: int, count: int, norm: str, repeats: int) -> dict[str, An
     )
     tasks = [approach_task(problem, target, problem.start) for target in problem.targets]
     certify_task(tasks[0], None)  # compiles
-    gaps, cells, times_ms, refused, proven, incomplete = [], [], [], 0, 0, 0
+    gaps, cells, times_ms, refused, proven, incomplete, beaten = [], [], [], 0, 0, 0, 0
     for task in tasks:
         best = best_on_arcs(task)
         certificate, time_ms = _timed(task, None if best is None else best.effort, repeats)
@@ -46,11 +47,12 @@ def certificates(seed: int, count: int, norm: str, repeats: int) -> dict[str, An
             refused += 1
             proven += certificate.lower_bound == math.inf
         else:
+            beaten += certificate.known_effort < best.effort * (1 - CERTIFICATE_GAP)
             gaps.append(1 - certificate.lower_bound / best.effort)
     return {
         "targets": count, "seed": seed, "norm": norm,
         "planned": len(gaps), "refused": refused, "refusals_proven": proven,
-        "incomplete": incomplete, "quantiles": QUANTILES,
+        "incomplete": incomplete, "ssas_beaten": beaten, "quantiles": QUANTILES,
         "gap": np.quantile(gaps, QUANTILES).tolist(),
         "cells": np.quantile(cells, QUANTILES).tolist(),
         "time_ms": np.quantile(times_ms, QUANTILES).tolist(),

@@ -15,12 +15,15 @@ class Certificate:
     Attributes:
         lower_bound: no approach angle, branch or tool side with a feasible cut-in has an effort
             below it; infinity: there is no feasible approach.
+        known_effort: the least effort known to be possible, the incumbent or one that the search
+            found; infinity: none.
         cells: cells of approach angles looked at.
-        complete: the bound is within CERTIFICATE_GAP of an effort that is possible, or infinity;
-            if false the budget ended first, and the bound is valid all the same.
+        complete: the bound is within CERTIFICATE_GAP of `known_effort`, or infinity; if false the
+            budget ended first, and the bound is valid all the same.
     """
 
     lower_bound: float
+    known_effort: float
     cells: int
     complete: bool
 
@@ -48,7 +51,7 @@ def certify_task(
             kernel_task, known, CERTIFICATE_GAP, most_cells - cells
         )
         bound, cells, complete = min(bound, proven), cells + looked_at, complete and done
-    return Certificate(float(bound), int(cells), bool(complete))
+    return Certificate(float(bound), float(known), int(cells), bool(complete))
 
 
 def is_infeasible(task: ApproachTask) -> bool:

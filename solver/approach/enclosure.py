@@ -38,7 +38,7 @@ def _turning(cos, sin, at_zero, at_quarter):
 
 @kernel
 def _arm(g, x, y, z, branch):
-    """Jets of theta1, theta2, theta3 for a wrist centre, and the most that the reach margin is."""
+    """Jets of theta1, theta2, theta3, theta2 + theta3, and the most that the reach margin is."""
     across_squared = j_add(j_square(x), j_square(y))
     across = j_root(across_squared)
     forward = across
@@ -61,11 +61,13 @@ def _arm(g, x, y, z, branch):
     gamma = j_arc_cosine(widened(cos_gamma, ENCLOSURE_ROUNDING))
     if branch // 2 % 2 == 1:
         gamma = j_scale(-1.0, gamma)
-    inner = j_arc_tangent(
-        j_scale(g.l3, j_sine(gamma)), j_add(number(g.a2), j_scale(g.l3, j_cosine(gamma)))
-    )
-    theta2 = j_subtract(j_arc_tangent(s, r), inner)
-    return theta1, theta2, j_subtract(gamma, number(g.beta)), reach
+    sine, cosine, elevation = j_sine(gamma), j_cosine(gamma), j_arc_tangent(s, r)
+    at_shoulder = j_arc_tangent(j_scale(g.l3, sine), j_add(number(g.a2), j_scale(g.l3, cosine)))
+    # The triangle's angle at the wrist, gamma less the one at the shoulder, as one function.
+    at_wrist = j_arc_tangent(j_scale(g.a2, sine), j_add(number(g.l3), j_scale(g.a2, cosine)))
+    theta2 = j_subtract(elevation, at_shoulder)
+    theta3 = j_subtract(gamma, number(g.beta))
+    return theta1, theta2, theta3, j_subtract(j_add(elevation, at_wrist), number(g.beta)), reach
 
 
 @kernel
@@ -135,16 +137,14 @@ def natural_enclosure(task, low, high, retreat, branch, q, slopes):
         _turning(cos, sin, u[2], v[2]),
     )
     back = g.tool_length + retreat
-    theta1, theta2, theta3, reach = _arm(
+    theta1, theta2, theta3, theta23, reach = _arm(
         g,
         j_subtract(number(p[0]), j_scale(back, z_axis[0])),
         j_subtract(number(p[1]), j_scale(back, z_axis[1])),
         j_subtract(number(p[2]), j_scale(back, z_axis[2])),
         branch,
     )
-    theta4, theta5, theta6 = _wrist(
-        task, theta1, j_add(theta2, theta3), cos, sin, z_axis, branch % 2
-    )
+    theta4, theta5, theta6 = _wrist(task, theta1, theta23, cos, sin, z_axis, branch % 2)
     for joint, theta in enumerate((theta1, theta2, theta3, theta4, theta5, theta6)):
         q[joint, 0], q[joint, 1] = shifted(theta[0], -g.offsets[joint])
         if q[joint, 1] - q[joint, 0] >= 2 * math.pi:
