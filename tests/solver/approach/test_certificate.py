@@ -17,7 +17,7 @@ from tests.solver.kinematics.arms import arms
 from tests.solver.methods.brute_force import least_effort_of_sweep
 from tests.solver.problems import DATA_SET_3, data_set_3, random_targets
 
-ANGLES = 1500
+ANGLES = 720
 GAP = 1e-6
 ROUNDING = 1e-9
 EXACT = ("ssas", "ncos")
