@@ -2,7 +2,9 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
+from solver.approach.certificate import certify_task, is_infeasible
 from solver.approach.task import ApproachTask, approach_task
 from solver.cut_in import broken_limit, build_cut_in
 from solver.methods.candidate import Candidate
@@ -36,19 +38,27 @@ def plan_target(problem: Problem, target: Target, reference: Sequence[float]) ->
     """The approach to one target from a reference posture [rad]."""
     started = time.perf_counter()
     task = approach_task(problem, target, reference)
-    outcome = _solve_between_rows_too(task)
+    outcome, task = _solve_between_rows_too(task)
     elapsed = time.perf_counter() - started
     method = problem.options.method
     if isinstance(outcome, Reason):
+        if problem.options.certify:
+            outcome = replace(outcome, proven=is_infeasible(task))
         report = SolverReport(method, elapsed, 0, outcome.code)
         return Approach(target.id, INFEASIBLE, report, reason=outcome)
     report = SolverReport(method, elapsed, outcome.iterations, outcome.status)
     cut_in = build_cut_in(task, outcome)
-    return judge(problem, propose(problem, target, outcome, cut_in, reference, report), reference)
+    approach = propose(problem, target, outcome, cut_in, reference, report)
+    if problem.options.certify:
+        bound = certify_task(task, approach.effort).lower_bound
+        approach = replace(approach, lower_bound=bound)
+    return judge(problem, approach, reference)
 
 
-def _solve_between_rows_too(task: ApproachTask) -> Candidate | Reason:
+def _solve_between_rows_too(task: ApproachTask) -> tuple[Candidate | Reason, ApproachTask]:
     """The method's answer, with limits that hold between the rows of the cut-in as well.
+
+    Also returns the task as it was solved last.
 
     A posture between two rows that breaks a limit becomes a row, and the target is solved again
     (the exchange method of semi-infinite programming).
@@ -57,9 +67,9 @@ def _solve_between_rows_too(task: ApproachTask) -> Candidate | Reason:
     for _ in range(EXCHANGE_ROUNDS):
         outcome = solve_task(task)
         if isinstance(outcome, Reason):
-            return outcome
+            return outcome, task
         retreat = broken_limit(task, outcome)
         if retreat is None or retreat in task.retreats_m:
-            return outcome
+            return outcome, task
         task = task.with_retreat(retreat)
-    return outcome
+    return outcome, task

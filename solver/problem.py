@@ -9,7 +9,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, Final
 
-from solver.exceptions import Fault, InvalidProblem
+from solver.exceptions import Fault, InvalidProblem, UnsupportedKinematics
+from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.robots.model import Robot, Tool
 from solver.tolerances import SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
 
@@ -85,6 +86,7 @@ class Problem:
         start = self.robot.home_rad if self.start_joints is None else self.start_joints
         faults += _start_faults(self.robot, start)
         faults += _option_faults(self.options, len(self.robot.joints))
+        faults += _certify_faults(self.options, self.robot, tool)
         faults += _target_faults(self.targets, self.robot.reach_m(tool))
         if faults:
             raise InvalidProblem(tuple(faults))
@@ -194,9 +196,20 @@ RANGES: Final[dict[str, tuple[float, float]]] = {
     "seed": (0, 2**63 - 1),
     "strike_zone_m": (0.0, 0.5),
     "tilt_tolerance_rad": (0.0, 0.8),
-    # Not built yet: only their neutral value is accepted, nothing is ignored in silence.
-    "certify": (0, 0),
 }
+
+
+def _certify_faults(options: Options, robot: Robot, tool: Tool) -> Iterable[Fault]:
+    if not options.certify:
+        return
+    for name in ("strike_zone_m", "tilt_tolerance_rad"):
+        if getattr(options, name) != 0.0:
+            detail = f"bounds the task without relaxations only; {name} is not zero"
+            yield Fault(("options", "certify"), detail)
+    try:
+        wrist_geometry(robot, tool)
+    except UnsupportedKinematics as error:
+        yield Fault(("options", "certify"), f"needs the closed form: {error}")
 
 
 def _option_faults(options: Options, joints: int) -> Iterable[Fault]:

@@ -43,6 +43,7 @@ class Reason:
         joint: the limiting joint's name, if a joint limits.
         margin_rad: how far that joint is inside its limits at best; negative: beyond [rad].
         margin_m: how far the target is inside the reach at best; negative: beyond [m].
+        proven: with `certify`, whether branch and bound has proven that no approach is feasible.
     """
 
     code: str
@@ -50,6 +51,7 @@ class Reason:
     joint: str | None = None
     margin_rad: float | None = None
     margin_m: float | None = None
+    proven: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,8 @@ class Approach:
             problem has a strike zone.
         tilt_rad: angle between the tool's y axis and the branch, when the problem tolerates one.
         effort: weighted joint travel from the previous standby (or the start) to thinning.
+        lower_bound: with `certify`, proven: no feasible approach of the unrelaxed task has an
+            effort below it.
         margin_rad: smallest distance of a joint to its limit in the whole cut-in.
     """
 
@@ -125,6 +129,7 @@ class Approach:
     path_joints: Array | None = None
     path_deviation_m: float | None = None
     effort: float | None = None
+    lower_bound: float | None = None
     margin_rad: float | None = None
     transfer: Transfer | None = None
     trajectory: Trajectory | None = None

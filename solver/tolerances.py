@@ -59,8 +59,9 @@ NEAR_FEASIBLE_RAD: Final = 0.3
 """A sampled maximum of the margin below -this is not looked at more closely: from there the margin
 would have to rise by 0.3 rad within 0.5 deg of approach angle."""
 
-ARC_END_RAD: Final = 1e-12
-"""Width to which the ends of an arc are refined [rad]; the feasible side is kept."""
+ARC_END_RAD: Final = 1e-15
+"""Width to which the ends of an arc are refined [rad]; the feasible side is kept. At the edge of
+reach joints turn with the square root of the angle: 1e-12 would leave 1e-6 of the effort there."""
 
 ARC_CELLS: Final = 72
 """Cells of one turn in which arcs are searched (5 deg). A single joint's margin is smooth in the
@@ -113,6 +114,28 @@ EFFORT_SWING_RAD: Final = 0.5
 SMOOTH_MINIMUM_RAD: Final = 3e-6
 """Width to which a smooth minimum of the effort is closed in on [rad]; effort is flat there, so it
 is good to 1e-11."""
+
+# --- Certificate --------------------------------------------------------------------------------
+CERTIFICATE_GAP: Final = 2e-7
+"""A proven bound that is nearer to the least effort found than this, relative, is near enough: half
+of the 1e-6 that `certify` promises."""
+
+CERTIFICATE_CELLS: Final = 20_000
+"""Cells of approach angles looked at for one target before the bound so far is returned."""
+
+CERTIFICATE_PIECES: Final = 16
+"""Cells that one turn of one branch starts with."""
+
+ENCLOSURE_ROUNDING: Final = 2e-15
+"""Rounding of the closed form in direction cosines, by which enclosures are widened: some ten
+operations on numbers near one, at 1.1e-16 each."""
+
+ANGLE_ROUNDING_RAD: Final = 1e-14
+"""Rounding of sums of a few angles of up to two turns, by which enclosures are widened [rad]."""
+
+ENCLOSURE_SINGULAR_WRIST: Final = 1e-9
+"""sin(q5) below which nothing is taken for known of q4 and q6: where the closed form sets q4 to
+zero (SINGULAR_WRIST), and ten times as far."""
 
 # --- Nonlinear programme ------------------------------------------------------------------------
 NLP_TOLERANCE: Final = 1e-9

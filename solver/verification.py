@@ -121,7 +121,7 @@ def verify_plan(plan: Plan) -> dict[str, Verification]:
 
 @dataclass(frozen=True)
 class _Claim:
-    """The fields of an approach that claims to be planned, all there."""
+    """The fields of an approach that claims to be planned, all there; the bound may be absent."""
 
     approach_angle_rad: float
     tool_side: int
@@ -134,11 +134,13 @@ class _Claim:
     margin_rad: float
     transfer: Transfer
     trajectory: Trajectory
+    lower_bound: float | None
 
 
 def _claim(approach: Approach) -> _Claim | None:
     values = {entry.name: getattr(approach, entry.name) for entry in fields(_Claim)}
-    return None if any(value is None for value in values.values()) else _Claim(**values)
+    missing = [name for name, value in values.items() if value is None and name != "lower_bound"]
+    return None if missing else _Claim(**values)
 
 
 def thinning_placement(
@@ -245,6 +247,9 @@ def _number_residuals(
     )
     error = abs(effort - claim.effort) / max(1.0, effort)
     yield Residual("effort_relative", error, EFFORT_ERROR_RELATIVE)
+    if claim.lower_bound is not None:
+        above = (claim.lower_bound - effort) / max(1.0, effort)
+        yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
     margin = cut_in_margin(problem, claim.path_joints, claim.trajectory)
     yield Residual("margin_claim_rad", abs(margin - claim.margin_rad), SAME_POSTURE_RAD)
     excess = problem.options.limit_margin_rad - margin

@@ -15,6 +15,7 @@ def warm_up() -> None:
         for method in METHODS:
             for norm in ("l1", "l2"):
                 solve(Problem(robot, [target], options=Options(method=method, norm=norm)))
+        solve(Problem(robot, [target], options=Options(method="ssas", certify=True)))
 
 
 if __name__ == "__main__":

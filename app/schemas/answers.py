@@ -47,6 +47,9 @@ class ReasonAnswer(BaseModel):
     joint: str | MISSING = MISSING
     margin_rad: float | MISSING = MISSING
     margin_m: float | MISSING = MISSING
+    proven: bool | MISSING = Field(
+        default=MISSING, description="with `certify`: proven that no approach is feasible"
+    )
 
 
 class TransferAnswer(BaseModel):
@@ -96,6 +99,9 @@ class ApproachAnswer(BaseModel):
     )
     path_deviation_m: float | MISSING = MISSING
     effort: float | MISSING = MISSING
+    lower_bound: float | MISSING = Field(
+        default=MISSING, description="with `certify`: proven, no approach has a lower effort"
+    )
     margin_rad: float | MISSING = MISSING
     solver: SolverAnswer
     transfer: TransferAnswer | MISSING = MISSING

@@ -61,9 +61,11 @@ class OptionsBody(StrictBody):
     tilt_tolerance_rad: float | MISSING = MISSING
     samples: int | MISSING = MISSING
     seed: int | MISSING = MISSING
-    certify: bool | MISSING = MISSING
     nlp_backend: str | MISSING = MISSING
     qp_solver: str | MISSING = MISSING
+    certify: bool | MISSING = Field(
+        default=MISSING, description="add a proven lower bound on each effort"
+    )
     include: Annotated[list[str], Field(fail_fast=True)] | MISSING = Field(
         default=MISSING,
         description="any of path, transfer, trajectory; default: all up to 50 targets, then path",

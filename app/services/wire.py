@@ -132,6 +132,7 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
         path_joints=_numbers(path),
         path_deviation_m=_optional(approach.path_deviation_m),
         effort=_optional(approach.effort),
+        lower_bound=_optional(approach.lower_bound),
         margin_rad=_optional(approach.margin_rad),
         solver={
             "method": solver.method,
@@ -152,6 +153,7 @@ def _reason(reason: Reason) -> dict[str, Any]:
         detail=reason.detail,
         margin_rad=_optional(reason.margin_rad),
         margin_m=_optional(reason.margin_m),
+        proven=reason.proven,
     )
 
 

@@ -532,7 +532,7 @@ def root(task, scratch, arm, wrist, i, row, broken, f_broken, met, f_met):
         x1, f1 = x3, f3
         kept = x1 if f1 >= 0.0 else x2
         width = abs(x1 - x2)
-        if width <= ARC_END_RAD:
+        if width <= ARC_END_RAD * (1.0 + abs(kept)):
             break
         xi, phi = (x1 - x2) / (x0 - x2), (f1 - f2) / (f0 - f2)
         if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:

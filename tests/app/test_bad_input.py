@@ -60,7 +60,7 @@ FAULTS: dict[str, tuple[tuple[str | int, ...], Any, str]] = {
     "path points": (("options", "path_points"), BIG, "#/options/path_points"),
     "dwell negative": (("options", "dwell_s"), -1, "#/options/dwell_s"),
     "strike zone": (("options", "strike_zone_m"), 0.6, "#/options/strike_zone_m"),
-    "certify": (("options", "certify"), True, "#/options/certify"),
+    "number as certify": (("options", "certify"), 1, "#/options/certify"),
     "joint weights short": (("options", "joint_weights"), [1.0], "#/options/joint_weights"),
     "joint weights negative": (
         ("options", "joint_weights"), [-1, 1, 1, 1, 1, 1], "#/options/joint_weights"),

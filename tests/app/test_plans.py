@@ -152,6 +152,19 @@ def test_options_are_all_known_to_the_solver(request_body: Body) -> None:
     assert set(given) == set(Options.__dataclass_fields__)
 
 
+def test_bounds_and_proofs_are_told(request_body: Body) -> None:
+    request_body["targets"].append(
+        {"id": "far", "position_m": [0.9, 0.0, 0.3], "branch_direction": [0, 1, 0]}
+    )
+    for certify in (True, False):
+        request_body["options"] = {"method": "ssas", "certify": certify}
+        problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
+        *planned, far = plan_to_wire(solve(problem), "0")["approaches"]
+        assert planned
+        assert all(("lower_bound" in approach) is certify for approach in planned)
+        assert far["reason"].get("proven") is (True if certify else None)
+
+
 def test_robots(server: Server) -> None:
     listed = server.client.get("/v1/robots").json()["robots"]
     assert "tabletop" in {robot["name"] for robot in listed}

@@ -50,7 +50,7 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
         (Options(tilt_tolerance_rad=math.nan), "#/options/tilt_tolerance_rad"),
         (Options(nlp_backend="snopt"), "#/options/nlp_backend"),
         (Options(qp_solver="gurobi"), "#/options/qp_solver"),
-        (Options(certify=True), "#/options/certify"),
+        (Options(certify=True, tilt_tolerance_rad=0.1), "#/options/certify"),
         (Options(samples=0), "#/options/samples"),
         (Options(joint_weights=(1, 1)), "#/options/joint_weights"),
         (Options(joint_weights=(-1, 1, 1, 1, 1, 1)), "#/options/joint_weights"),
