@@ -37,6 +37,15 @@ class SolverAnswer(BaseModel):
     status: str
 
 
+class NearestAnswer(BaseModel):
+    """The nearest feasible change to a target that has no approach."""
+
+    kind: str = Field(description="angle, or displacement of the target")
+    approach_angle_rad: float = Field(description="in the displaced target's approach frame")
+    displacement_m: list[float] = Field(description="added to the position; zero for an angle")
+    verified: bool
+
+
 class ReasonAnswer(BaseModel):
     """Why a target has no approach."""
 
@@ -45,6 +54,7 @@ class ReasonAnswer(BaseModel):
     joint: str | MISSING = MISSING
     margin_rad: float | MISSING = MISSING
     margin_m: float | MISSING = MISSING
+    nearest: NearestAnswer | MISSING = MISSING
 
 
 class TransferAnswer(BaseModel):
@@ -87,6 +97,9 @@ class ApproachAnswer(BaseModel):
     path_deviation_m: float | MISSING = MISSING
     effort: float | MISSING = MISSING
     margin_rad: float | MISSING = MISSING
+    displacement_margin_m: float | MISSING = Field(
+        default=MISSING, description="how far the target may move until the path meets a limit"
+    )
     solver: SolverAnswer
     transfer: TransferAnswer | MISSING = MISSING
     trajectory: TrajectoryAnswer | MISSING = MISSING

@@ -18,6 +18,7 @@ from solver import (
     Approach,
     Fault,
     InvalidProblem,
+    Nearest,
     Options,
     Plan,
     Problem,
@@ -62,7 +63,12 @@ def problem_from_wire(request: PlanRequest) -> Problem:
 
 def _problem(given: Mapping[str, Any], robot: Robot) -> Problem:
     targets = [
-        Target(target["id"], tuple(target["position_m"]), tuple(target["branch_direction"]))
+        Target(
+            target["id"],
+            tuple(target["position_m"]),
+            tuple(target["branch_direction"]),
+            target.get("position_std_m"),
+        )
         for target in given["targets"]
     ]
     options = Options(**given.get("options", {}))
@@ -75,11 +81,6 @@ def _not_available(given: Mapping[str, Any]) -> list[Fault]:
         faults.append(Fault(("frame",), f"only {BASE_FRAME!r} is available yet"))
     if "scene" in given:
         faults.append(Fault(("scene",), "obstacles are not available yet"))
-    faults += (
-        Fault(("targets", k, "position_std_m"), "uncertain positions are not available yet")
-        for k, target in enumerate(given["targets"])
-        if "position_std_m" in target
-    )
     return faults
 
 
@@ -131,6 +132,7 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
         path_deviation_m=_optional(approach.path_deviation_m),
         effort=_optional(approach.effort),
         margin_rad=_optional(approach.margin_rad),
+        displacement_margin_m=_optional(approach.displacement_margin_m),
         solver={
             "method": solver.method,
             "elapsed_s": _number(solver.elapsed_s),
@@ -150,7 +152,17 @@ def _reason(reason: Reason) -> dict[str, Any]:
         detail=reason.detail,
         margin_rad=_optional(reason.margin_rad),
         margin_m=_optional(reason.margin_m),
+        nearest=None if reason.nearest is None else _nearest(reason.nearest),
     )
+
+
+def _nearest(nearest: Nearest) -> dict[str, Any]:
+    return {
+        "kind": nearest.kind,
+        "approach_angle_rad": _number(nearest.approach_angle_rad),
+        "displacement_m": [_number(value) for value in nearest.displacement_m],
+        "verified": bool(nearest.verified),
+    }
 
 
 def _transfer(transfer: Transfer) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.approach.feasibility import sample
+from solver.approach.robustness import robust_arcs
 from solver.approach.search import feasible_arcs
 from solver.approach.task import ApproachTask, approach_task
 from solver.kinematics.spherical_wrist import BRANCHES
@@ -58,13 +59,13 @@ def sample_task(task: ApproachTask, tool_side: int, n: int) -> tuple[Array, Arra
 
 
 def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
-    """Feasible arcs of every branch and tool side of a task."""
+    """Feasible arcs of every branch and tool side that bear the target's uncertainty."""
     arcs: list[Arc] = []
     for side in task.tool_sides:
         angles, margins, _ = sample_task(task, side, ARC_SAMPLES)
         found = feasible_arcs(task.for_kernels(side), angles, margins)
         arcs += [Arc(side, int(branch), float(low), float(high)) for branch, low, high in found]
-    return tuple(arcs)
+    return robust_arcs(task, arcs)
 
 
 def survey_target(problem: Problem, target: Target, reference: Sequence[float]) -> Survey:
