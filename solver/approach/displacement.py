@@ -17,6 +17,7 @@ from solver.tolerances import (
     DISPLACEMENT_STEP_RELATIVE,
     PROBE_HALVINGS,
     SCREENED_DISTANCES,
+    SINGULAR_SINE,
     STRAIGHT_WRIST_PROBES,
 )
 
@@ -59,6 +60,45 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
                 length += new[i] * new[i]
         delta[:] = new
         if change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
+            break
+    return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
+
+
+@kernel
+def straight_wrist_distance(g, position, axes, branch, q, delta):
+    """Length of the smallest shift of the tool at which the wrist is straight [m].
+
+    Two equations, sin q5 cos q4 = sin q5 sin q4 = 0: q5 itself is a cone with its tip there, which
+    no linearisation meets. Arguments as for `limit_distance`; delta starts at zero.
+    """
+    rates, reach_rates, at = np.empty((6, 4)), np.empty(4), q.copy()
+    first, second = np.empty(3), np.empty(3)
+    for _ in range(DISPLACEMENT_ROUNDS):
+        joint_rates(g, at, axes, 0.0, axes[:, 1], rates, reach_rates)
+        turn4, turn5 = at[3] + g.offsets[3], at[4] + g.offsets[4]
+        c4, s4, c5, s5 = math.cos(turn4), math.sin(turn4), math.cos(turn5), math.sin(turn5)
+        value1, value2 = -s5 * c4, -s5 * s4
+        m11, m12, m22 = 0.0, 0.0, 0.0
+        for i in range(3):
+            first[i] = c5 * c4 * rates[4, i] - s5 * s4 * rates[3, i]
+            second[i] = c5 * s4 * rates[4, i] + s5 * c4 * rates[3, i]
+            value1 += first[i] * delta[i]
+            value2 += second[i] * delta[i]
+            m11 += first[i] * first[i]
+            m12 += first[i] * second[i]
+            m22 += second[i] * second[i]
+        determinant = max(m11 * m22 - m12 * m12, 1e-300)
+        along = (m22 * value1 - m12 * value2) / determinant
+        across = (m11 * value2 - m12 * value1) / determinant
+        change, length = 0.0, 0.0
+        for i in range(3):
+            new = along * first[i] + across * second[i]
+            change += (new - delta[i]) ** 2
+            length += new * new
+            delta[i] = new
+        reach = shifted(g, position, delta, axes, branch, q, at)
+        near_tip = abs(math.sin(at[4] + g.offsets[4])) < 10 * SINGULAR_SINE
+        if reach < 0 or near_tip or change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
             break
     return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
 
@@ -136,7 +176,10 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
         if kind < 12:
             limit = high[kind // 2] if kind % 2 else low[kind // 2]
         delta[:] = 0.0
-        length = limit_distance(g, position, axes, branch, rows[n], kind // 2, limit, delta)
+        if (kind == 8 and low[4] > lower[4]) or (kind == 9 and high[4] < upper[4]):
+            length = straight_wrist_distance(g, position, axes, branch, rows[n], delta)
+        else:
+            length = limit_distance(g, position, axes, branch, rows[n], kind // 2, limit, delta)
         if length < best:
             best, best_row, best_joint = length, n, kind // 2
             best_delta[:] = delta

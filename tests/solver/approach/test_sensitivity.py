@@ -13,12 +13,12 @@ LEVER = 0.03
 
 
 def _moved(pose: Array, k: int, step: float) -> Array:
-    """The pose shifted along a base axis, or turned about its y axis through a point ahead of it."""
+    """The pose shifted along a base axis, or turned about its y through a point ahead."""
     moved = pose.copy()
     if k < 3:
         moved[k, 3] += step
         return moved
-    x, y, z = pose[:3, :3].T
+    _, y, z = pose[:3, :3].T
     ahead = pose[:3, 3] + LEVER * z
     turned = np.cos(step) * z + np.sin(step) * np.cross(y, z)
     moved[:3, :3] = np.column_stack((np.cross(y, turned), y, turned))
