@@ -170,10 +170,10 @@ NEAREST_QP_SWEEPS: Final = 60
 NEAREST_STEPS: Final = 40
 """Quadratic programmes at most from one start; twelve are usual."""
 
-NEAREST_ROUNDS: Final = 5
+NEAREST_ROUNDS: Final = 7
 """How often a row that breaks a limit is added to the rows watched, or the spread widened."""
 
-NEAREST_ANGLES: Final = 36
+NEAREST_ANGLES: Final = 72
 """Approach angles at which the displacement needed is estimated."""
 
 NEAREST_STARTS: Final = 8
@@ -190,6 +190,10 @@ NEAREST_FLATTEST: Final = 0.1
 
 NEAREST_RESTORATIONS: Final = 12
 """Steps at most straight back to the constraints at the end; near them each squares the error."""
+
+NEAREST_BEND_RAD: Final = 0.02
+"""How far from straight the wrist is kept at a row where it jumps [rad]; doubled while it does. At
+5 rad/m of wrist centre travel joint 4 turns 250 rad/m there, which is what counts as a jump."""
 
 DIAGNOSED_ANGLES: Final = 180
 """Approach angles at which the closest failure is looked for before the best is refined."""

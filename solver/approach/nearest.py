@@ -18,6 +18,7 @@ from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
 from solver.tolerances import (
     NEAREST_ANGLE_SCALE_M,
+    NEAREST_BEND_RAD,
     NEAREST_CONVERGED_M,
     NEAREST_FLATTEST,
     NEAREST_INSIDE_M,
@@ -55,7 +56,7 @@ def copy_at(task, position):
 
 
 @kernel
-def row_constraints(task, axes, turn, retreat, branch, near, spread, q, values, gradients):
+def row_constraints(task, axes, turn, retreat, branch, near, spread, bend, q, values, gradients):
     """One row's constraints as distances [m], >= 0 where met, and their gradients.
 
     Args:
@@ -66,6 +67,7 @@ def row_constraints(task, axes, turn, retreat, branch, near, spread, q, values, 
         branch: inverse kinematics branch.
         near: posture on whose turns the row is, shape (6,) [rad].
         spread: displacement that every limit has to bear [m].
+        bend: how far joint 5 has to be from straight, if above 0 [rad].
         q: written, the posture, shape (6,).
         values: written, shape (13,); the joints of a row out of reach are those at its edge.
         gradients: written, shape (13, 4): by displacement [m/m] and approach angle [m/rad].
@@ -80,8 +82,13 @@ def row_constraints(task, axes, turn, retreat, branch, near, spread, q, values, 
         q[i] = near[i] + wrap(q[i] - near[i])
         slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
         flat = scale * min(1.0, steepest / max(slope * scale, 1e-300))
-        values[2 * i] = scale * (q[i] - task.lower[i] - NEAREST_INSIDE_RAD - spread * slope)
-        values[2 * i + 1] = scale * (task.upper[i] - q[i] - NEAREST_INSIDE_RAD - spread * slope)
+        low, high = task.lower[i], task.upper[i]
+        if i == 4 and bend > 0:
+            offset = task.geometry.offsets[4]
+            below = math.pi * math.floor((q[4] + offset) / math.pi) - offset
+            low, high = max(low, below + bend), min(high, below + math.pi - bend)
+        values[2 * i] = scale * (q[i] - low - NEAREST_INSIDE_RAD - spread * slope)
+        values[2 * i + 1] = scale * (high - q[i] - NEAREST_INSIDE_RAD - spread * slope)
         for k in range(4):
             gradients[2 * i, k] = flat * rates[i, k]
             gradients[2 * i + 1, k] = -flat * rates[i, k]
@@ -103,7 +110,7 @@ def thinning_turns(task, axes, branch, near):
 
 
 @kernel
-def constraints(task, origin, x, turn, branch, watched, count, spread, values, gradients):
+def constraints(task, origin, x, turn, branch, watched, count, spread, bend, values, gradients):
     """Constraints of all watched rows at x = (delta, angle); moves the task's target there."""
     axes, near, q = np.empty((3, 3)), np.empty(6), np.empty(6)
     for i in range(3):
@@ -119,6 +126,7 @@ def constraints(task, origin, x, turn, branch, watched, count, spread, values, g
             branch,
             near,
             spread,
+            bend,
             q,
             values[_KINDS * w : _KINDS * (w + 1)],
             gradients[_KINDS * w : _KINDS * (w + 1)],
@@ -146,7 +154,7 @@ def lagrangian_slope(x, gradients, multipliers, count, slope):
 
 
 @kernel
-def minimise(task, origin, x, turn, branch, watched, count, spread):
+def minimise(task, origin, x, turn, branch, watched, count, spread, bend):
     """Local minimum of |delta| from x, written to x; returns what is missing in constraints [m]."""
     rows = _KINDS * count
     values, gradients = np.empty(rows), np.empty((rows, 4))
@@ -156,7 +164,7 @@ def minimise(task, origin, x, turn, branch, watched, count, spread):
     before, after, new = np.empty(4), np.empty(4), np.empty(4)
     reset(hessian, inverse)
     fresh = True
-    constraints(task, origin, x, turn, branch, watched, count, spread, values, gradients)
+    constraints(task, origin, x, turn, branch, watched, count, spread, bend, values, gradients)
     most = NEAREST_PENALTY * (math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2) + 0.02)
     for _ in range(NEAREST_STEPS):
         slope[:3] = x[:3]
@@ -173,7 +181,17 @@ def minimise(task, origin, x, turn, branch, watched, count, spread):
             for i in range(4):
                 new[i] = x[i] + scale * step[i]
             constraints(
-                task, origin, new, turn, branch, watched, count, spread, new_values, new_gradients
+                task,
+                origin,
+                new,
+                turn,
+                branch,
+                watched,
+                count,
+                spread,
+                bend,
+                new_values,
+                new_gradients,
             )
             there = (new[0] ** 2 + new[1] ** 2 + new[2] ** 2) / 2
             there += most * violation(new_values, rows)
@@ -203,7 +221,7 @@ def minimise(task, origin, x, turn, branch, watched, count, spread):
             break
         penalty_programme(inverse, slope, values, gradients, rows, most, multipliers, step)
         x += step
-        constraints(task, origin, x, turn, branch, watched, count, spread, values, gradients)
+        constraints(task, origin, x, turn, branch, watched, count, spread, bend, values, gradients)
     return violation(values, rows)
 
 
@@ -246,7 +264,7 @@ def estimates(task, angles, spread, found, starts):
             x[:] = 0.0
             x[3] = angles[k]
             into_reach(moved, origin, x, turn, branch)
-            constraints(moved, origin, x, turn, branch, ends, 2, spread, values, gradients)
+            constraints(moved, origin, x, turn, branch, ends, 2, spread, 0.0, values, gradients)
             way = math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2)
             worst = 0.0
             for j in range(2 * _KINDS):
@@ -270,22 +288,31 @@ def nearest_displacement(task, branch, start, spread, rows):
     watched = np.zeros(NEAREST_ROUNDS + 3, dtype=np.int64)
     last = len(task.retreats) - 1
     watched[0], watched[1], watched[2], count = last, 0, last // 2, 3
-    widened = spread
+    widened, bend = spread, 0.0
     for _ in range(NEAREST_ROUNDS):
-        if minimise(moved, origin, x, turn, branch, watched, count, widened) > NEAREST_INSIDE_M:
+        missing = minimise(moved, origin, x, turn, branch, watched, count, widened, bend)
+        if missing > NEAREST_INSIDE_M:
             return False, x
         for i in range(3):
             moved.position[i] = origin[i] + x[i]
         if trace(moved, x[3], branch, task.retreats, rows) < 0:
-            worst, where = 0.0, -1
+            worst, where, most, jump = 0.0, -1, 0.0, 0
             for n in range(last + 1):
                 inside, _ = limit_margin(task, rows[n])
                 if inside < worst:
                     worst, where = inside, n
-            if where < 0 or where in watched[:count]:
+                if n < last:
+                    step = np.abs(rows[n] - rows[n + 1]).max()
+                    if step > most:
+                        most, jump = step, n
+            if where < 0:
+                # A jump: the wrist has to stay bent there, further every time.
+                bend, where = max(2 * bend, NEAREST_BEND_RAD), jump
+            elif where in watched[:count]:
                 return False, x
-            watched[count] = where
-            count += 1
+            if where not in watched[:count]:
+                watched[count] = where
+                count += 1
             continue
         if spread == 0.0:
             return True, x
