@@ -21,7 +21,16 @@ from solver.exceptions import (
 from solver.planner import solve
 from solver.problem import Options, Problem, Target
 from solver.robots.model import Joint, Robot, Tool, load_robot, robot_names
-from solver.solution import Approach, Plan, Reason, Segment, SolverReport, Trajectory, Transfer
+from solver.solution import (
+    Approach,
+    Nearest,
+    Plan,
+    Reason,
+    Segment,
+    SolverReport,
+    Trajectory,
+    Transfer,
+)
 from solver.verification import Residual, Verification, verify, verify_plan
 
 __all__ = [
@@ -30,6 +39,7 @@ __all__ = [
     "InvalidProblem",
     "InvalidRobot",
     "Joint",
+    "Nearest",
     "Options",
     "Plan",
     "Problem",

@@ -12,7 +12,7 @@ from typing import Any, Final
 from solver.exceptions import Fault, InvalidProblem, UnsupportedKinematics
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.robots.model import Robot, Tool
-from solver.tolerances import SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
+from solver.tolerances import LARGEST_STD_REACHES, SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
 
 ORDERS: Final = ("independent", "given")
 NORMS: Final = ("l1", "l2")
@@ -36,6 +36,7 @@ class Target:
     id: str
     position_m: Sequence[float]
     branch_direction: Sequence[float]
+    position_std_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -175,6 +176,14 @@ def _target_faults(targets: Sequence[Target], reach_m: float) -> Iterable[Fault]
             yield Fault(("targets", k, "branch_direction"), problem)
         elif not SHORTEST_DIRECTION < math.hypot(*target.branch_direction) < math.inf:
             yield Fault(("targets", k, "branch_direction"), "the direction has no usable length")
+        if target.position_std_m is None:
+            continue
+        # Written so that a value that is not a number is a fault.
+        if not 0 <= target.position_std_m <= LARGEST_STD_REACHES * reach_m:
+            yield Fault(
+                ("targets", k, "position_std_m"),
+                f"must be between 0 and {LARGEST_STD_REACHES:g} times the reach, in metres",
+            )
 
 
 def _vector_problem(values: Sequence[float], length: int) -> str | None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from solver.approach.robustness import path_displacement_margin
 from solver.cut_in import CutIn
 from solver.effort import posture_effort
 from solver.methods.candidate import Candidate
@@ -49,8 +50,17 @@ def propose(
         path_deviation_m=cut_in.deviation_m,
         effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
         margin_rad=cut_in_margin(problem, cut_in.path_joints, trajectory),
+        displacement_margin_m=_displacement_margin(problem, candidate, cut_in),
         transfer=transfer,
         trajectory=trajectory,
+    )
+
+
+def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) -> float | None:
+    if candidate.branch is None:
+        return None  # no closed form to follow a displaced target with
+    return path_displacement_margin(
+        problem.robot, problem.mounted_tool, problem.options, candidate.branch, cut_in.path_joints
     )
 
 

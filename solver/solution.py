@@ -34,6 +34,25 @@ class SolverReport:
 
 
 @dataclass(frozen=True)
+class Nearest:
+    """The nearest feasible change to a target that has no approach.
+
+    Attributes:
+        kind: "angle": the method's other approach angles are feasible, this one is nearest to
+            those it tried. "displacement": the target itself would have to move.
+        approach_angle_rad: a feasible approach angle, in (-pi, pi]; with a displacement, in the
+            approach frame of the displaced target.
+        displacement_m: what is added to the target's position, shape (3,) [m]; zero for an angle.
+        verified: the change was made and the whole cut-in found feasible.
+    """
+
+    kind: str
+    approach_angle_rad: float
+    displacement_m: tuple[float, float, float]
+    verified: bool
+
+
+@dataclass(frozen=True)
 class Reason:
     """Why a target has no approach.
 
@@ -42,8 +61,10 @@ class Reason:
         detail: a sentence for people.
         joint: the limiting joint's name, if a joint limits.
         margin_rad: how far that joint is inside its limits at best; negative: beyond [rad].
-        margin_m: how far the target is inside the reach at best; negative: beyond [m].
         proven: with `certify`, whether branch and bound has proven that no approach is feasible.
+        margin_m: how far the wrist centre is inside the reach at best, or, where only the target's
+            uncertainty is too large, by how much it may move less than it has to; negative [m].
+        nearest: the nearest feasible change, if one was found.
     """
 
     code: str
@@ -52,6 +73,7 @@ class Reason:
     margin_rad: float | None = None
     margin_m: float | None = None
     proven: bool | None = None
+    nearest: Nearest | None = None
 
 
 @dataclass(frozen=True)
@@ -113,6 +135,9 @@ class Approach:
         lower_bound: with `certify`, proven: no feasible approach of the unrelaxed task has an
             effort below it.
         margin_rad: smallest distance of a joint to its limit in the whole cut-in.
+        displacement_margin_m: how far the target may move, in any direction, until a row of the
+            path meets a limit, with its orientation and branch kept; limits less the margin asked
+            for, the reach, and the straight wrist.
     """
 
     target_id: str
@@ -131,6 +156,7 @@ class Approach:
     effort: float | None = None
     lower_bound: float | None = None
     margin_rad: float | None = None
+    displacement_margin_m: float | None = None
     transfer: Transfer | None = None
     trajectory: Trajectory | None = None
 

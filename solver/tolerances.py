@@ -250,3 +250,103 @@ a parabola between rows, so its middle is among them and its quarter points tell
 
 FLAT_SLOPE_RAD_M: Final = 1e-6
 """A joint that turns less along the cut-in does not set its pace [rad/m]; no division by zero."""
+
+
+# --- Displaced targets --------------------------------------------------------------------------
+SINGULAR_SINE: Final = 1e-6
+"""Sine of the wrist's, elbow's or waist's singular angle below which rates are those at this sine:
+joints turn by 1e6 times the tool's turn there, and no division by zero."""
+
+DISPLACEMENT_ROUNDS: Final = 12
+"""Linearisations at most in the search for the nearest point of a limit; four are usual."""
+
+DISPLACEMENT_STEP_RELATIVE: Final = 1e-6
+"""Relative change of that point below which it is found."""
+
+SCREENED_DISTANCES: Final = 2.5
+"""Limits whose first-order distance is above this many times the smallest exact one are not looked
+at more closely."""
+
+STRAIGHT_WRIST_PROBES: Final = 12
+"""Directions around a straight wrist in which limits of joints 4 and 6 are looked for: 30 degrees,
+a tenth of what these joints turn in all."""
+
+PROBE_HALVINGS: Final = 12
+"""Halvings of the way to a broken limit before the nearest point of the limit is looked for."""
+
+# --- Nearest feasible change --------------------------------------------------------------------
+NEAREST_INSIDE_RAD: Final = 1e-4
+"""How far inside its limits every joint of the nearest displacement is put [rad]. At the smallest
+displacement the feasible arc is often a point; this opens it to the width that no search misses,
+for about 0.01 mm of displacement."""
+
+NEAREST_INSIDE_M: Final = 1e-5
+"""The same for the reach [m]."""
+
+NEAREST_INSIDE_ARC_RAD: Final = 1e-6
+"""How far inside its arc the nearest angle is put [rad], so that digits lost on the way to another
+program do not lose it."""
+
+NEAREST_CONVERGED_M: Final = 1e-7
+"""Step of the displacement below which its minimum is found [m]."""
+
+NEAREST_ANGLE_SCALE_M: Final = 0.05
+"""Tool travel that a radian of approach angle counts as in the first step [m]: half a tool."""
+
+NEAREST_LARGEST_TURN_RAD: Final = 0.3
+"""Largest step of the approach angle in one step; beyond, the linear constraints mean nothing."""
+
+NEAREST_PENALTY: Final = 10.0
+"""Penalty of a broken constraint, in multiples of the displacement at the start plus 2 cm: above
+the multipliers, which are as large as the displacement unless constraints nearly oppose."""
+
+NEAREST_QP_SWEEPS: Final = 60
+"""Sweeps over the constraints in each quadratic programme; ten are usual."""
+
+NEAREST_STEPS: Final = 40
+"""Quadratic programmes at most from one start; twelve are usual."""
+
+NEAREST_ROUNDS: Final = 7
+"""How often a row that breaks a limit is added to the rows watched, or the spread widened."""
+
+NEAREST_ANGLES: Final = 72
+"""Approach angles at which the displacement needed is estimated."""
+
+NEAREST_STARTS: Final = 8
+"""Branches and angles from which the nearest displacement is searched, the best estimates first."""
+
+NEAREST_START_INSIDE_M: Final = 1e-3
+"""How deep inside the reach a search starts [m]: at the edge the elbow's rate has no bound."""
+
+NEAREST_STEEPEST: Final = 10.0
+"""Largest slope of a joint constraint at a row out of reach, in half arm lengths a metre."""
+
+NEAREST_FLATTEST: Final = 0.1
+"""Smallest slope with which an estimate counts, in the same unit: no division by zero."""
+
+NEAREST_RESTORATIONS: Final = 12
+"""Steps at most straight back to the constraints at the end; near them each squares the error."""
+
+NEAREST_BEND_RAD: Final = 0.02
+"""How far from straight the wrist is kept at a row where it jumps [rad]; doubled while it does. At
+5 rad/m of wrist centre travel joint 4 turns 250 rad/m there, which is what counts as a jump."""
+
+DIAGNOSED_ANGLES: Final = 180
+"""Approach angles at which the closest failure is looked for before the best is refined."""
+
+NEAREST_PRUNED: Final = 2.0
+"""Starts whose estimate is above this many times the best displacement found are left out."""
+
+# --- Uncertain targets --------------------------------------------------------------------------
+UNCERTAINTY_DEVIATIONS: Final = 3.0
+"""Standard deviations that a target may be away from where it was seen. The nearest limit is all
+but flat at that scale: 99.87 % of normally distributed targets are on its feasible side, and 97 %
+in the whole ball."""
+
+LARGEST_STD_REACHES: Final = 0.25
+"""A standard deviation above this share of the reach is refused: sent in another unit, or no
+detection at all."""
+
+ROBUST_ANGLE_RAD: Final = 1e-9
+"""Width to which the ends of arcs that bear an uncertainty are bisected [rad]. The margin changes
+by less than 1e-8 m within it; the verifier allows POSITION_ERROR_M."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from solver.approach.frame import approach_frame
 from solver.approach.relaxation import Placement, placement, rotation, shortened
+from solver.approach.robustness import needed_margin, path_displacement_margin
 from solver.cut_in import line_deviation
 from solver.effort import posture_effort
 from solver.kinematics.forward import forward_kinematics
@@ -83,6 +84,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         _path_residuals(problem, target, claim),
         _relaxation_residuals(problem, target, approach, claim),
         _number_residuals(problem, claim, reference),
+        _displacement_residuals(problem, target, claim),
         _motion_residuals(problem, target, claim, reference),
     )
     found: list[Residual] = []
@@ -132,6 +134,7 @@ class _Claim:
     path_deviation_m: float
     effort: float
     margin_rad: float
+    displacement_margin_m: float
     transfer: Transfer
     trajectory: Trajectory
     lower_bound: float | None
@@ -254,6 +257,15 @@ def _number_residuals(
     yield Residual("margin_claim_rad", abs(margin - claim.margin_rad), SAME_POSTURE_RAD)
     excess = problem.options.limit_margin_rad - margin
     yield Residual("limit_excess_rad", excess, LIMIT_EXCESS_RAD)
+
+
+def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
+    margin = path_displacement_margin(
+        problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints
+    )
+    claimed = abs(margin - claim.displacement_margin_m)
+    yield Residual("displacement_margin_claim_m", claimed, POSITION_ERROR_M)
+    yield Residual("uncertainty_excess_m", needed_margin(target) - margin, POSITION_ERROR_M)
 
 
 def cut_in_margin(problem: Problem, path_joints: Array, trajectory: Trajectory) -> float:

@@ -39,6 +39,15 @@ class SolverAnswer(BaseModel):
     status: str
 
 
+class NearestAnswer(BaseModel):
+    """The nearest feasible change to a target that has no approach."""
+
+    kind: str = Field(description="angle, or displacement of the target")
+    approach_angle_rad: float = Field(description="in the displaced target's approach frame")
+    displacement_m: list[float] = Field(description="added to the position; zero for an angle")
+    verified: bool
+
+
 class ReasonAnswer(BaseModel):
     """Why a target has no approach."""
 
@@ -50,6 +59,7 @@ class ReasonAnswer(BaseModel):
     proven: bool | MISSING = Field(
         default=MISSING, description="with `certify`: proven that no approach is feasible"
     )
+    nearest: NearestAnswer | MISSING = MISSING
 
 
 class TransferAnswer(BaseModel):
@@ -103,6 +113,9 @@ class ApproachAnswer(BaseModel):
         default=MISSING, description="with `certify`: proven, no approach has a lower effort"
     )
     margin_rad: float | MISSING = MISSING
+    displacement_margin_m: float | MISSING = Field(
+        default=MISSING, description="how far the target may move until the path meets a limit"
+    )
     solver: SolverAnswer
     transfer: TransferAnswer | MISSING = MISSING
     trajectory: TrajectoryAnswer | MISSING = MISSING

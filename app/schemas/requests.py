@@ -24,7 +24,10 @@ class TargetBody(StrictBody):
     id: str = Field(description="not empty, once in a batch")
     position_m: Vector
     branch_direction: Vector = Field(description="along the branch, any length above zero")
-    position_std_m: float | MISSING = Field(default=MISSING, description="not available yet")
+    position_std_m: float | MISSING = Field(
+        default=MISSING,
+        description="standard deviation of the position in every direction; default: exact",
+    )
 
 
 class SceneBranchBody(StrictBody):

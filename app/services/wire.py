@@ -18,6 +18,7 @@ from solver import (
     Approach,
     Fault,
     InvalidProblem,
+    Nearest,
     Options,
     Plan,
     Problem,
@@ -62,7 +63,12 @@ def problem_from_wire(request: PlanRequest) -> Problem:
 
 def _problem(given: Mapping[str, Any], robot: Robot) -> Problem:
     targets = [
-        Target(target["id"], tuple(target["position_m"]), tuple(target["branch_direction"]))
+        Target(
+            target["id"],
+            tuple(target["position_m"]),
+            tuple(target["branch_direction"]),
+            target.get("position_std_m"),
+        )
         for target in given["targets"]
     ]
     options = Options(**given.get("options", {}))
@@ -75,11 +81,6 @@ def _not_available(given: Mapping[str, Any]) -> list[Fault]:
         faults.append(Fault(("frame",), f"only {BASE_FRAME!r} is available yet"))
     if "scene" in given:
         faults.append(Fault(("scene",), "obstacles are not available yet"))
-    faults += (
-        Fault(("targets", k, "position_std_m"), "uncertain positions are not available yet")
-        for k, target in enumerate(given["targets"])
-        if "position_std_m" in target
-    )
     return faults
 
 
@@ -134,6 +135,7 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
         effort=_optional(approach.effort),
         lower_bound=_optional(approach.lower_bound),
         margin_rad=_optional(approach.margin_rad),
+        displacement_margin_m=_optional(approach.displacement_margin_m),
         solver={
             "method": solver.method,
             "elapsed_s": _number(solver.elapsed_s),
@@ -154,7 +156,17 @@ def _reason(reason: Reason) -> dict[str, Any]:
         margin_rad=_optional(reason.margin_rad),
         margin_m=_optional(reason.margin_m),
         proven=reason.proven,
+        nearest=None if reason.nearest is None else _nearest(reason.nearest),
     )
+
+
+def _nearest(nearest: Nearest) -> dict[str, Any]:
+    return {
+        "kind": nearest.kind,
+        "approach_angle_rad": _number(nearest.approach_angle_rad),
+        "displacement_m": [_number(value) for value in nearest.displacement_m],
+        "verified": bool(nearest.verified),
+    }
 
 
 def _transfer(transfer: Transfer) -> dict[str, Any]:

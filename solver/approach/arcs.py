@@ -7,6 +7,7 @@ import numpy as np
 
 from solver.approach.arc_search import WHOLE_TURN, arcs_of
 from solver.approach.feasibility import sample
+from solver.approach.robustness import robust_arcs
 from solver.approach.task import ApproachTask, approach_task
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem import Problem, Target
@@ -23,8 +24,8 @@ class Arc:
         branch: 0 to 7.
         lower_rad: in [-pi, pi].
         upper_rad: beyond pi where the arc crosses the half turn.
-        lower_limit: what ends the arc there: a joint's name, "reach" or "wrist_jump"; None where
-            the arc is the whole turn.
+        lower_limit: what ends the arc there: a joint's name, "reach", "wrist_jump", or the
+            target's "uncertainty"; None where the arc is the whole turn.
         upper_limit: the same at the upper end.
     """
 
@@ -72,14 +73,14 @@ def sample_angles_of(task: ApproachTask, tool_side: int, angles: Array) -> tuple
 
 
 def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
-    """Feasible arcs of every branch and tool side of a task."""
+    """Feasible arcs of every branch and tool side that bear the target's uncertainty."""
     limits = (*task.robot.joint_names, "reach", "reach", "wrist_jump")
     arcs: list[Arc] = []
     for side in task.tool_sides:
         for branch, low, high, by_low, by_high in arcs_of(task.packed(side)):
             ends = (None if code == WHOLE_TURN else limits[int(code)] for code in (by_low, by_high))
             arcs.append(Arc(side, int(branch), float(low), float(high), *ends))
-    return tuple(arcs)
+    return robust_arcs(task, arcs)
 
 
 def survey_target(problem: Problem, target: Target, reference: Sequence[float]) -> Survey:

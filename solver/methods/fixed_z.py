@@ -7,8 +7,10 @@ import numpy as np
 
 from solver.approach.arcs import sample_angles_of
 from solver.approach.frame import signed_angle
+from solver.approach.robustness import bears_uncertainty
 from solver.approach.task import ApproachTask
 from solver.diagnosis import diagnose
+from solver.kinematics.spherical_wrist import BRANCHES
 from solver.methods.candidate import Candidate
 from solver.robots.model import Array
 from solver.solution import Reason
@@ -38,7 +40,12 @@ def solve_fixed_z(task: ApproachTask) -> Candidate | Reason:
     offers: list[tuple[float, int, int]] = []
     for side in flat.tool_sides:
         margins, efforts = sample_angles_of(flat, side, np.array([angle]))
-        offers += [(float(efforts[b, 0]), -side, b) for b in range(8) if margins[b, 0] >= 0]
+        offers += [
+            (float(efforts[branch_number, 0]), -side, branch_number)
+            for branch_number in range(BRANCHES)
+            if margins[branch_number, 0] >= 0
+            and bears_uncertainty(flat, angle, side, branch_number)
+        ]
     if not offers:
         return diagnose(flat, np.array([angle]))
     cost, negative_side, number = min(offers)

@@ -2,6 +2,7 @@
 
 from solver.approach.arcs import sample_angles, sample_task
 from solver.approach.frame import signed_angle
+from solver.approach.robustness import bears_uncertainty
 from solver.approach.task import ApproachTask
 from solver.diagnosis import diagnose
 from solver.methods.candidate import Candidate
@@ -21,8 +22,8 @@ def solve_floating_z(task: ApproachTask) -> Candidate | Reason:
         for branch, k in zip(*(margins >= 0).nonzero(), strict=True):
             angle = signed_angle(float(angles[k]))
             offers.append((float(efforts[branch, k]), abs(angle), -side, int(branch), angle))
-    if not offers:
-        return diagnose(task, sample_angles(n))
-    cost, _, negative_side, branch, angle = min(offers)
-    thinning = task.thinning_joints(angle, -negative_side, branch)
-    return Candidate(angle, -negative_side, branch, thinning, cost, n, "best_of_samples")
+    for cost, _, negative_side, branch, angle in sorted(offers):
+        if bears_uncertainty(task, angle, -negative_side, branch):
+            thinning = task.thinning_joints(angle, -negative_side, branch)
+            return Candidate(angle, -negative_side, branch, thinning, cost, n, "best_of_samples")
+    return diagnose(task, sample_angles(n))

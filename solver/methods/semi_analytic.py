@@ -7,14 +7,13 @@ Source: S 3.2, with the approach angle in the place of its redundant coordinate.
 import math
 from dataclasses import dataclass
 
-from solver.approach.arcs import Arc, sample_angles, task_arcs
+from solver.approach.arcs import Arc, task_arcs
 from solver.approach.frame import signed_angle
 from solver.approach.search import optimum_on_arc
 from solver.approach.task import ApproachTask
 from solver.diagnosis import diagnose
 from solver.methods.candidate import Candidate
 from solver.solution import Reason
-from solver.tolerances import ARC_SAMPLES
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ def solve_ssas(task: ApproachTask) -> Candidate | Reason:
 
 def why_none(task: ApproachTask) -> Reason:
     """The reason for a task without feasible arcs."""
-    return diagnose(task, sample_angles(ARC_SAMPLES))
+    return diagnose(task)
 
 
 def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:

@@ -69,7 +69,10 @@ FAULTS: dict[str, tuple[tuple[str | int, ...], Any, str]] = {
     "scene with branches": (
         ("scene",),
         {"branches": [{"id": MARKER, "points_m": [[0, 0, 0]], "radius_m": 0.1}]}, "#/scene"),
-    "uncertain": (("targets", 1, "position_std_m"), 0.002, "#/targets/1/position_std_m"),
+    "deviation negative": (
+        ("targets", 1, "position_std_m"), -0.002, "#/targets/1/position_std_m"),
+    "deviation in millimetres": (
+        ("targets", 1, "position_std_m"), 2.0, "#/targets/1/position_std_m"),
 }  # fmt: skip
 
 NOT_FINITE = ["NaN", "Infinity", "-Infinity", "1e999", "-1e999", "1" + "0" * 400]

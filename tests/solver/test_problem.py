@@ -27,6 +27,10 @@ def pointers(robot: Robot, **changes: object) -> list[str]:
         (Target("1", (0.2, 0, 0.3), (0, 1)), "#/targets/0/branch_direction"),
         (Target("1", (0.2, 0, 0.3), (0, math.nan, 0)), "#/targets/0/branch_direction"),
         (Target("", (0.2, 0, 0.3), (0, 1, 0)), "#/targets/0/id"),
+        (Target("1", (0.2, 0, 0.3), (0, 1, 0), -0.001), "#/targets/0/position_std_m"),
+        (Target("1", (0.2, 0, 0.3), (0, 1, 0), math.nan), "#/targets/0/position_std_m"),
+        (Target("1", (0.2, 0, 0.3), (0, 1, 0), math.inf), "#/targets/0/position_std_m"),
+        (Target("1", (0.2, 0, 0.3), (0, 1, 0), 2.0), "#/targets/0/position_std_m"),
     ],
 )
 def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: str) -> None:

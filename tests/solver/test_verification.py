@@ -22,6 +22,7 @@ from solver import (
     verify_plan,
 )
 from solver.registry import METHODS
+from solver.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.verification import judge
 from tests.solver.problems import data_set_3, random_targets
 
@@ -91,6 +92,7 @@ SPOILERS: dict[str, Callable[[Approach], Approach]] = {
     "effort": _nudged("effort", (), -1e-6),
     "effort not a number": _nudged("effort", (), np.nan),
     "margin": _nudged("margin_rad", (), 1e-6),
+    "displacement margin": _nudged("displacement_margin_m", (), 2e-6),
     "deviation": _nudged("path_deviation_m", (), -2e-6),
     "cut-in row": _nudged_row(-10, 1e-3),
     "transfer row": _nudged_row(3, 0.05),
@@ -128,6 +130,19 @@ def test_limits_count_with_the_margin_asked_for(plan: Plan) -> None:
         options = replace(plan.problem.options, limit_margin_rad=approach.margin_rad + change)
         strict = replace(plan.problem, options=options)
         assert verify(strict, approach, plan.problem.start).accepted is accepted
+
+
+def test_a_target_more_uncertain_than_its_posture_bears_does_not_verify(plan: Plan) -> None:
+    approach = plan.approaches[0]
+    assert approach.displacement_margin_m is not None
+    borne = approach.displacement_margin_m / UNCERTAINTY_DEVIATIONS
+    for std, accepted in ((0.999 * borne, True), (1.001 * borne, False)):
+        first = replace(plan.problem.targets[0], position_std_m=std)
+        problem = replace(plan.problem, targets=(first, *plan.problem.targets[1:]))
+        verification = verify(problem, approach, plan.problem.start)
+        assert verification.accepted is accepted
+        names = [residual.name for residual in verification.failures]
+        assert names == ([] if accepted else ["uncertainty_excess_m"])
 
 
 def test_only_the_verifier_gives_the_status_planned() -> None:

@@ -1,0 +1,368 @@
+"""Kernels: the smallest displacement of a target at which its task becomes feasible.
+
+Minimises |delta|^2 / 2 over the displacement delta and the approach angle phi, on one branch, with
+the joint limits and the reach at some rows of the cut-in as constraints: a sequential quadratic
+programme with an exact penalty (S l1 QP), BFGS and derivatives in closed form. Joint constraints
+are multiplied by half the arm's length, so that all are lengths [m].
+"""
+
+import math
+
+import numpy as np
+
+from solver.approach.displacement import rows_displacement_margin
+from solver.approach.feasibility import CutInTask, limit_margin, posture, tool_axes, trace
+from solver.approach.quadratic import penalty_programme, reset, update
+from solver.approach.sensitivity import joint_rates
+from solver.compiled import kernel
+from solver.kinematics.spherical_wrist import wrap
+from solver.tolerances import (
+    NEAREST_ANGLE_SCALE_M,
+    NEAREST_BEND_RAD,
+    NEAREST_CONVERGED_M,
+    NEAREST_FLATTEST,
+    NEAREST_INSIDE_M,
+    NEAREST_INSIDE_RAD,
+    NEAREST_LARGEST_TURN_RAD,
+    NEAREST_PENALTY,
+    NEAREST_PRUNED,
+    NEAREST_RESTORATIONS,
+    NEAREST_ROUNDS,
+    NEAREST_START_INSIDE_M,
+    NEAREST_STARTS,
+    NEAREST_STEEPEST,
+    NEAREST_STEPS,
+)
+
+_KINDS = 13  # constraints of a row: both limits of six joints, and the reach
+
+
+@kernel
+def copy_at(task, position):
+    """The same task with its target at a position of its own, which may be written."""
+    return CutInTask(
+        task.geometry,
+        task.lower,
+        task.upper,
+        position,
+        task.y_axis,
+        task.outward,
+        task.sideways,
+        task.retreats,
+        task.reference,
+        task.weights,
+        task.squared,
+    )
+
+
+@kernel
+def row_constraints(task, axes, turn, retreat, branch, near, spread, bend, q, values, gradients):
+    """One row's constraints as distances [m], >= 0 where met, and their gradients.
+
+    Args:
+        task: the task, its target where it is displaced to.
+        axes: the tool's axes.
+        turn: the branch direction, about which the approach angle turns.
+        retreat: distance of the row behind the target [m].
+        branch: inverse kinematics branch.
+        near: posture on whose turns the row is, shape (6,) [rad].
+        spread: displacement that every limit has to bear [m].
+        bend: how far joint 5 has to be from straight, if above 0 [rad].
+        q: written, the posture, shape (6,).
+        values: written, shape (13,); the joints of a row out of reach are those at its edge.
+        gradients: written, shape (13, 4): by displacement [m/m] and approach angle [m/rad].
+    """
+    rates, reach_rates = np.empty((6, 4)), np.empty(4)
+    reach = posture(task, axes, retreat, branch, q)
+    lever = retreat + task.geometry.tool_length
+    joint_rates(task.geometry, q, axes, lever, turn, rates, reach_rates)
+    scale = (task.geometry.a2 + task.geometry.l3) / 2
+    steepest = NEAREST_STEEPEST if reach < 0 else math.inf
+    for i in range(6):
+        q[i] = near[i] + wrap(q[i] - near[i])
+        slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
+        flat = scale * min(1.0, steepest / max(slope * scale, 1e-300))
+        low, high = task.lower[i], task.upper[i]
+        if i == 4 and bend > 0:
+            offset = task.geometry.offsets[4]
+            below = math.pi * math.floor((q[4] + offset) / math.pi) - offset
+            low, high = max(low, below + bend), min(high, below + math.pi - bend)
+        values[2 * i] = scale * (q[i] - low - NEAREST_INSIDE_RAD - spread * slope)
+        values[2 * i + 1] = scale * (high - q[i] - NEAREST_INSIDE_RAD - spread * slope)
+        for k in range(4):
+            gradients[2 * i, k] = flat * rates[i, k]
+            gradients[2 * i + 1, k] = -flat * rates[i, k]
+    values[12] = reach - NEAREST_INSIDE_M - spread
+    gradients[12] = reach_rates
+
+
+@kernel
+def thinning_turns(task, axes, branch, near):
+    """Writes to `near` the posture at the target on the turns that `thinning` chooses."""
+    reach = posture(task, axes, 0.0, branch, near)
+    for i in range(6):
+        for turn in (-2 * math.pi, 2 * math.pi):
+            other = near[i] + turn
+            inside = task.lower[i] <= other <= task.upper[i]
+            if inside and abs(other - task.reference[i]) < abs(near[i] - task.reference[i]):
+                near[i] = other
+    return reach
+
+
+@kernel
+def constraints(task, origin, x, turn, branch, watched, count, spread, bend, values, gradients):
+    """Constraints of all watched rows at x = (delta, angle); moves the task's target there."""
+    axes, near, q = np.empty((3, 3)), np.empty(6), np.empty(6)
+    for i in range(3):
+        task.position[i] = origin[i] + x[i]
+    tool_axes(task, x[3], axes)
+    thinning_turns(task, axes, branch, near)
+    for w in range(count):
+        row_constraints(
+            task,
+            axes,
+            turn,
+            task.retreats[watched[w]],
+            branch,
+            near,
+            spread,
+            bend,
+            q,
+            values[_KINDS * w : _KINDS * (w + 1)],
+            gradients[_KINDS * w : _KINDS * (w + 1)],
+        )
+
+
+@kernel
+def violation(values, count):
+    """Sum of what is missing in broken constraints [m]."""
+    total = 0.0
+    for j in range(count):
+        if values[j] < 0:
+            total -= values[j]
+    return total
+
+
+@kernel
+def lagrangian_slope(x, gradients, multipliers, count, slope):
+    """Writes the Lagrangian's gradient, shape (4,)."""
+    slope[0], slope[1], slope[2], slope[3] = x[0], x[1], x[2], 0.0
+    for j in range(count):
+        if multipliers[j] > 0:
+            for i in range(4):
+                slope[i] -= multipliers[j] * gradients[j, i]
+
+
+@kernel
+def minimise(task, origin, x, turn, branch, watched, count, spread, bend):
+    """Local minimum of |delta| from x, written to x; returns what is missing in constraints [m]."""
+    rows = _KINDS * count
+    values, gradients = np.empty(rows), np.empty((rows, 4))
+    new_values, new_gradients = np.empty(rows), np.empty((rows, 4))
+    hessian, inverse = np.empty((4, 4)), np.empty((4, 4))
+    multipliers, step, slope = np.zeros(rows), np.empty(4), np.zeros(4)
+    before, after, new = np.empty(4), np.empty(4), np.empty(4)
+    reset(hessian, inverse)
+    fresh = True
+    constraints(task, origin, x, turn, branch, watched, count, spread, bend, values, gradients)
+    most = NEAREST_PENALTY * (math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2) + 0.02)
+    for _ in range(NEAREST_STEPS):
+        slope[:3] = x[:3]
+        penalty_programme(inverse, slope, values, gradients, rows, most, multipliers, step)
+        length = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2)
+        if length + NEAREST_ANGLE_SCALE_M * abs(step[3]) < NEAREST_CONVERGED_M:
+            break
+        scale = min(1.0, NEAREST_LARGEST_TURN_RAD / max(abs(step[3]), 1e-300))
+        here = violation(values, rows)
+        merit = (x[0] ** 2 + x[1] ** 2 + x[2] ** 2) / 2 + most * here
+        lagrangian_slope(x, gradients, multipliers, rows, before)
+        accepted = False
+        for _ in range(10):
+            for i in range(4):
+                new[i] = x[i] + scale * step[i]
+            constraints(
+                task,
+                origin,
+                new,
+                turn,
+                branch,
+                watched,
+                count,
+                spread,
+                bend,
+                new_values,
+                new_gradients,
+            )
+            there = (new[0] ** 2 + new[1] ** 2 + new[2] ** 2) / 2
+            there += most * violation(new_values, rows)
+            if there < merit:
+                accepted = True
+                break
+            scale /= 2.5
+        if not accepted:
+            if fresh:
+                break
+            reset(hessian, inverse)
+            fresh = True
+            continue
+        lagrangian_slope(new, new_gradients, multipliers, rows, after)
+        for i in range(4):
+            step[i] *= scale
+            after[i] -= before[i]
+        update(hessian, inverse, step, after)
+        fresh = False
+        x[:] = new
+        values[:] = new_values
+        gradients[:, :] = new_gradients
+    slope[:] = 0.0
+    reset(hessian, inverse)
+    for _ in range(NEAREST_RESTORATIONS):
+        if violation(values, rows) <= 0.0:
+            break
+        penalty_programme(inverse, slope, values, gradients, rows, most, multipliers, step)
+        x += step
+        constraints(task, origin, x, turn, branch, watched, count, spread, bend, values, gradients)
+    return violation(values, rows)
+
+
+@kernel
+def into_reach(task, origin, x, turn, branch):
+    """Moves delta straight into the reach of the thinning posture, where it is outside."""
+    axes, q, rates, reach_rates = np.empty((3, 3)), np.empty(6), np.empty((6, 4)), np.empty(4)
+    tool_axes(task, x[3], axes)
+    for _ in range(3):
+        for i in range(3):
+            task.position[i] = origin[i] + x[i]
+        reach = posture(task, axes, 0.0, branch, q)
+        if reach >= 0:
+            break
+        joint_rates(task.geometry, q, axes, 0.0, turn, rates, reach_rates)
+        square = max(reach_rates[0] ** 2 + reach_rates[1] ** 2 + reach_rates[2] ** 2, 1e-12)
+        for i in range(3):
+            x[i] += reach_rates[i] / square * (NEAREST_START_INSIDE_M - reach)
+
+
+@kernel
+def estimates(task, angles, spread, found, starts):
+    """Estimates of the displacement that each branch and angle needs, and where to start.
+
+    Args:
+        task: the task.
+        angles: approach angles, shape (n,).
+        spread: displacement that every limit has to bear [m].
+        found: written, shape (8, n): the way into reach and then to the worst limit of thinning and
+            standby, to first order [m].
+        starts: written, shape (8, n, 4): displacement and angle inside the reach.
+    """
+    origin, moved = task.position, copy_at(task, task.position.copy())
+    turn = np.cross(task.outward, task.sideways)
+    values, gradients = np.empty(2 * _KINDS), np.empty((2 * _KINDS, 4))
+    ends = np.array([len(task.retreats) - 1, 0])
+    for branch in range(8):
+        for k in range(len(angles)):
+            x = starts[branch, k]
+            x[:] = 0.0
+            x[3] = angles[k]
+            into_reach(moved, origin, x, turn, branch)
+            constraints(moved, origin, x, turn, branch, ends, 2, spread, 0.0, values, gradients)
+            way = math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2)
+            worst = 0.0
+            for j in range(2 * _KINDS):
+                slope = math.sqrt(
+                    gradients[j, 0] ** 2 + gradients[j, 1] ** 2 + gradients[j, 2] ** 2
+                )
+                worst = max(worst, -values[j] / max(slope, NEAREST_FLATTEST))
+            found[branch, k] = way + worst
+
+
+@kernel
+def nearest_displacement(task, branch, start, spread, rows):
+    """The smallest displacement found on one branch from one start; `rows` is scratch.
+
+    Returns:
+        Whether the whole cut-in is feasible at the displaced target, and x = (delta [m], angle).
+    """
+    origin, moved = task.position, copy_at(task, task.position.copy())
+    turn = np.cross(task.outward, task.sideways)
+    x = start.copy()
+    watched = np.zeros(NEAREST_ROUNDS + 3, dtype=np.int64)
+    last = len(task.retreats) - 1
+    watched[0], watched[1], watched[2], count = last, 0, last // 2, 3
+    widened, bend = spread, 0.0
+    for _ in range(NEAREST_ROUNDS):
+        missing = minimise(moved, origin, x, turn, branch, watched, count, widened, bend)
+        if missing > NEAREST_INSIDE_M:
+            return False, x
+        for i in range(3):
+            moved.position[i] = origin[i] + x[i]
+        if trace(moved, x[3], branch, task.retreats, rows) < 0:
+            worst, where, most, jump = 0.0, -1, 0.0, 0
+            for n in range(last + 1):
+                inside, _ = limit_margin(task, rows[n])
+                if inside < worst:
+                    worst, where = inside, n
+                if n < last:
+                    step = np.abs(rows[n] - rows[n + 1]).max()
+                    if step > most:
+                        most, jump = step, n
+            if where < 0:
+                # A jump: the wrist has to stay bent there, further every time.
+                bend, where = max(2 * bend, NEAREST_BEND_RAD), jump
+            elif where in watched[:count]:
+                return False, x
+            if where not in watched[:count]:
+                watched[count] = where
+                count += 1
+            continue
+        if spread == 0.0:
+            return True, x
+        pose, axes = np.eye(4), np.empty((3, 3))
+        tool_axes(moved, x[3], axes)
+        pose[:3, :3] = axes
+        pose[:3, 3] = moved.position
+        margin, where, _ = rows_displacement_margin(
+            task.geometry, task.lower, task.upper, pose, task.retreats, branch, rows
+        )
+        if margin >= spread:
+            return True, x
+        widened += 1.1 * (spread - margin) + NEAREST_INSIDE_M
+        if where not in watched[:count]:
+            watched[count] = where
+            count += 1
+    return False, x
+
+
+@kernel
+def nearest_of_all(task, angles, spread):
+    """The smallest displacement found from the best starts over all branches and angles.
+
+    Args:
+        task: the task.
+        angles: approach angles over one turn at which starts are looked for, shape (n,) [rad].
+        spread: displacement that every limit has to bear [m].
+
+    Returns:
+        Whether one was found, its branch, and x = (delta [m], angle), shape (4,).
+    """
+    n = len(angles)
+    found, starts = np.empty((8, n)), np.empty((8, n, 4))
+    estimates(task, angles, spread, found, starts)
+    promising = np.full((8, n), np.inf)
+    for branch in range(8):
+        for k in range(n):
+            here = found[branch, k]
+            if here <= found[branch, k - 1] and here <= found[branch, (k + 1) % n]:
+                promising[branch, k] = here
+    rows = np.empty((len(task.retreats), 6))
+    best, best_branch, best_x, any_found = math.inf, 0, np.zeros(4), False
+    for _ in range(NEAREST_STARTS):
+        branch, k = divmod(int(np.argmin(promising)), n)
+        if promising[branch, k] >= NEAREST_PRUNED * best or promising[branch, k] == math.inf:
+            break
+        promising[branch, k] = math.inf
+        feasible, x = nearest_displacement(task, branch, starts[branch, k], spread, rows)
+        length = math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2)
+        if feasible and length < best:
+            best, best_branch, any_found = length, branch, True
+            best_x[:] = x
+    return any_found, best_branch, best_x

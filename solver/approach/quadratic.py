@@ -1,0 +1,82 @@
+"""Kernels: one step of a sequential quadratic programme in four variables."""
+
+import numpy as np
+
+from solver.compiled import kernel
+from solver.tolerances import NEAREST_ANGLE_SCALE_M, NEAREST_CONVERGED_M, NEAREST_QP_SWEEPS
+
+
+@kernel
+def penalty_programme(inverse, slope, values, gradients, count, most, multipliers, step):
+    """Minimises step' H step / 2 + slope' step + most sum max(0, -(values + gradients step)).
+
+    Coordinate ascent in the dual (Hildreth), whose multipliers the penalty keeps below `most`.
+    """
+    towards, curvature = np.zeros((count, 4)), np.ones(count)
+    for i in range(4):
+        step[i] = 0.0
+        for k in range(4):
+            step[i] -= inverse[i, k] * slope[k]
+    for j in range(count):
+        multipliers[j] = 0.0
+        curvature[j] = 1e-300
+        for i in range(4):
+            for k in range(4):
+                towards[j, i] += inverse[i, k] * gradients[j, k]
+            curvature[j] += gradients[j, i] * towards[j, i]
+    for _ in range(NEAREST_QP_SWEEPS):
+        largest = 0.0
+        for j in range(count):
+            value = values[j]
+            for i in range(4):
+                value += gradients[j, i] * step[i]
+            changed = min(max(multipliers[j] - value / curvature[j], 0.0), most)
+            change = changed - multipliers[j]
+            if change != 0.0:
+                multipliers[j] = changed
+                largest = max(largest, abs(change))
+                for i in range(4):
+                    step[i] += towards[j, i] * change
+        if largest <= NEAREST_CONVERGED_M * 1e-3:
+            break
+
+
+@kernel
+def reset(hessian, inverse):
+    """Curvature of the objective, with a weight on the turn."""
+    hessian[:, :] = 0.0
+    inverse[:, :] = 0.0
+    for i in range(3):
+        hessian[i, i], inverse[i, i] = 1.0, 1.0
+    hessian[3, 3] = NEAREST_ANGLE_SCALE_M**2
+    inverse[3, 3] = 1.0 / NEAREST_ANGLE_SCALE_M**2
+
+
+@kernel
+def update(hessian, inverse, step, change):
+    """BFGS with Powell's damping, of the Hessian and its inverse."""
+    towards = np.zeros(4)
+    curved, along = 0.0, 0.0
+    for i in range(4):
+        for k in range(4):
+            towards[i] += hessian[i, k] * step[k]
+        curved += step[i] * towards[i]
+        along += step[i] * change[i]
+    if curved <= 1e-300:
+        return
+    if along < 0.2 * curved:
+        share = 0.8 * curved / (curved - along)
+        for i in range(4):
+            change[i] = share * change[i] + (1 - share) * towards[i]
+        along = 0.2 * curved
+    back, length = np.zeros(4), 0.0
+    for i in range(4):
+        for k in range(4):
+            back[i] += inverse[i, k] * change[k]
+        length += change[i] * back[i]
+    for i in range(4):
+        for k in range(4):
+            hessian[i, k] += change[i] * change[k] / along - towards[i] * towards[k] / curved
+            inverse[i, k] += (1 + length / along) * step[i] * step[k] / along - (
+                back[i] * step[k] + step[i] * back[k]
+            ) / along
