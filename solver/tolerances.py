@@ -114,3 +114,30 @@ a parabola between rows, so its middle is among them and its quarter points tell
 
 FLAT_SLOPE_RAD_M: Final = 1e-6
 """A joint that turns less along the cut-in does not set its pace [rad/m]; no division by zero."""
+
+# --- Sequences ----------------------------------------------------------------------------------
+CHAIN_STENCIL_RAD: Final = 1e-4
+"""Distance of the angles from which a posture's parabola is drawn [rad]: its slope is then good to
+1e-8 and its curvature to 1e-7, from third differences and from rounding alike."""
+
+CHAIN_REACH_RAD: Final = 0.03
+"""How far an angle of a chain may move in the first round of polishing [rad]: what lies between two
+nodes of the ladder graph, and more."""
+
+CHAIN_STILL_RAD: Final = 1e-8
+"""Reach of a round of polishing below which nothing is gained any more [rad]."""
+
+CHAIN_ROUNDS: Final = 12
+"""Most rounds of polishing."""
+
+CHAIN_GAIN_RELATIVE: Final = 1e-11
+"""Polishing ends where a round changes the effort by less, relative."""
+
+CHAIN_MU_LEAST: Final = 1e-11
+"""Width within which the l1 norm is rounded off at the end [rad]."""
+
+CHAIN_MU_FACTOR: Final = 0.3
+"""From one width to the next."""
+
+CHAIN_NEWTON_STEPS: Final = 6
+"""Newton steps for one width at most."""
