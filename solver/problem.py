@@ -13,7 +13,7 @@ from solver.exceptions import Fault, InvalidProblem
 from solver.robots.model import Robot, Tool
 from solver.tolerances import SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
 
-ORDERS: Final = ("independent", "given")
+ORDERS: Final = ("independent", "given", "optimal")
 NORMS: Final = ("l1", "l2")
 WEIGHTS: Final = ("uniform",)
 INCLUDES: Final = ("path", "transfer", "trajectory")

@@ -141,3 +141,50 @@ CHAIN_MU_FACTOR: Final = 0.3
 
 CHAIN_NEWTON_STEPS: Final = 6
 """Newton steps for one width at most."""
+
+ANNEAL_HOT: Final = 1.0
+"""Temperature at the start of the search for an order, in efforts of a target on average."""
+
+ANNEAL_COLD: Final = 0.003
+"""Temperature at its end."""
+
+ANNEAL_HOPELESS: Final = 0.5
+"""A move that is dearer by so much before approaches are chosen anew is not looked at further, in
+efforts of a target on average."""
+
+ANNEAL_WINDOW: Final = 3
+"""Places on each side of a change whose approaches are chosen anew."""
+
+ANNEAL_LONGEST_RUN: Final = 3
+"""Most targets that are moved elsewhere together."""
+
+ANNEAL_LONGEST_TURN: Final = 50
+"""Most targets that are turned about together."""
+
+ANNEAL_STEP_RAD: Final = 0.175
+"""Distance of the approach angles that an order is searched with [rad]; finer ones cost more and
+end, for the same time, with dearer orders."""
+
+ANNEAL_NEIGHBOURS: Final = 12
+"""Targets cheap to reach a target from, behind one of which a run is moved that begins with it."""
+
+ANNEAL_TRIALS: Final = 2_000_000
+"""Moves tried when an order is searched."""
+
+EXACT_TARGETS: Final = 8
+"""Up to so many targets the order is exact."""
+
+EXACT_STEP_RAD: Final = 0.0525
+"""Distance of the approach angles when it is [rad]."""
+
+EXACT_ORDERS_KEPT: Final = 24
+"""Orders, cheapest on those angles, whose approaches are refined before one is taken."""
+
+LADDER_STEP_RAD: Final = 0.0525
+"""Distance of the angles at which the ladder graph of an order begins [rad], 120 on a turn."""
+
+LADDER_KEPT: Final = 16
+"""Nodes a target that are halved in the next round."""
+
+LADDER_ROUNDS: Final = 3
+"""Halvings; the angles are then 6.6 mrad apart, and polishing has no further to go than that."""

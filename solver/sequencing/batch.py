@@ -1,12 +1,11 @@
 """A batch for the kernels: every target's feasible arcs, and postures at angles on them."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.feasibility import CutInTask, limit_margin, posture, thinning, tool_axes, trace
+from solver.approach.feasibility import CutInTask, posture, tool_axes, trace
 from solver.compiled import kernel
 from solver.robots.model import Array
 

@@ -52,7 +52,7 @@ def _pieces(batch, arc, step):
     length = batch.arc_upper[arc] - batch.arc_lower[arc]
     if length <= 0.0:
         return 0
-    return max(2, int(math.ceil(length / step)))
+    return max(2, math.ceil(length / step))
 
 
 @kernel
@@ -107,7 +107,11 @@ def halved(kept, layers, arcs, places, pieces):
             for place in range(2 * places[old] - 1, 2 * places[old] + 2):
                 if place < 0 or place > 2 * pieces[old]:
                     continue
-                if n > new_layers[k] and new_arcs[n - 1] == arcs[old] and new_places[n - 1] >= place:
+                if (
+                    n > new_layers[k]
+                    and new_arcs[n - 1] == arcs[old]
+                    and new_places[n - 1] >= place
+                ):
                     continue
                 new_arcs[n], new_places[n], new_pieces[n] = arcs[old], place, 2 * pieces[old]
                 origins[n] = old if place == 2 * places[old] else -1

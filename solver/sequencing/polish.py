@@ -1,11 +1,11 @@
 """Kernels: the angles of a chain, refined together and continuously.
 
-A grid cannot follow a kink of the l1 norm that ties the angles of neighbouring targets together, and
-moving one angle after the other stops there. So all angles move at once. Around the present angles
-every posture is replaced by its parabola in the angle; the chain's effort in these parabolas, the
-l1 norm rounded off within mu, is minimised by Newton's method, whose Hessian is tridiagonal, with mu
-falling to nothing; the minimum is taken over when the true effort is lower there, else the angles
-may move less far. Angles stay on their arcs throughout.
+A grid cannot follow a kink of the l1 norm that ties the angles of neighbouring targets together,
+nor can moving one angle after the other. So all move at once. Around the present angles every
+posture is replaced by its parabola in the angle; the chain's effort in these parabolas, the l1 norm
+rounded off within mu, is minimised by Newton's method, whose Hessian is tridiagonal, with mu
+falling to nothing; the minimum is taken over when the true effort is lower there. Where the
+parabolas were wrong, the angles may move less far. They stay on their arcs throughout.
 """
 
 import math
