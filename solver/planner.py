@@ -60,7 +60,7 @@ def _planned_first(problem: Problem, approaches: Sequence[Approach]) -> tuple[Ap
 def plan_target(
     problem: Problem, target: Target, reference: Sequence[float], stop: Stop | None = None
 ) -> Approach:
-    """The approach to one target from a reference posture [rad]; that of its stop, if it has one."""
+    """The approach to one target from a reference posture [rad]; its stop's, if it has one."""
     started = time.perf_counter()
     task = approach_task(problem, target, reference)
     outcome = _solve_between_rows_too(task) if stop is None else stop.candidate

@@ -142,10 +142,10 @@ CHAIN_MU_FACTOR: Final = 0.3
 CHAIN_NEWTON_STEPS: Final = 6
 """Newton steps for one width at most."""
 
-ANNEAL_HOT: Final = 1.0
+ANNEAL_HOT: Final = 0.3
 """Temperature at the start of the search for an order, in efforts of a target on average."""
 
-ANNEAL_COLD: Final = 0.003
+ANNEAL_COLD: Final = 0.005
 """Temperature at its end."""
 
 ANNEAL_HOPELESS: Final = 0.5
@@ -168,8 +168,8 @@ end, for the same time, with dearer orders."""
 ANNEAL_NEIGHBOURS: Final = 12
 """Targets cheap to reach a target from, behind one of which a run is moved that begins with it."""
 
-ANNEAL_TRIALS: Final = 2_000_000
-"""Moves tried when an order is searched."""
+ANNEAL_TRIALS: Final = 8_000
+"""Moves tried for each target when an order is searched, about 1 us each."""
 
 EXACT_TARGETS: Final = 8
 """Up to so many targets the order is exact."""

@@ -1,8 +1,9 @@
 """Kernels: order and approaches of a batch changed together, by simulated annealing.
 
 A move takes a short run of targets elsewhere, with approaches chosen anew for the run, or turns a
-run about where it is. Where a move was accepted, the approaches beside it are chosen anew by the
-exact dynamic programme of the ladder graph.
+run about where it is, so that a target comes behind one from which it is cheap to reach. Where a
+move was accepted, the approaches beside it are chosen anew by the exact dynamic programme of the
+ladder graph.
 """
 
 import math
@@ -203,13 +204,16 @@ def _put(sequence, run, begin, end, to):
 def _proposal(state, order, place, neighbours):
     """A random move: first and last place of a run, where to, and whether it turns about.
 
-    A begin of -1 means none: the run would go where it is.
+    Either way a target comes behind one from which it is cheap to reach. A begin of -1 means none.
     """
     n = len(order)
     if _random(state) < 0.25:
-        length = 2 + _below(state, min(ANNEAL_LONGEST_TURN, n) - 1)
-        begin = _below(state, n - length + 1)
-        return begin, begin + length - 1, begin, True
+        end = _below(state, n)
+        near = neighbours[order[end], _below(state, neighbours.shape[1])]
+        begin = place[near] + 1
+        if not 2 <= end - begin + 1 <= ANNEAL_LONGEST_TURN:
+            return -1, -1, -1, False
+        return begin, end, begin, True
     length = 1 + _below(state, min(ANNEAL_LONGEST_RUN, n - 1))
     begin = _below(state, n - length + 1)
     end = begin + length - 1

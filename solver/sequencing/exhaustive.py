@@ -1,8 +1,8 @@
 """Kernels: the cheapest orders of a few targets, exactly on given nodes (Held and Karp, 1962).
 
-For every set of targets and every node of its last one the least effort is known from the sets with
-one target less. The effort of every *order* on the nodes is bounded by the same table run backwards,
-so that the cheapest orders come out one after the other.
+Backwards, from sets that lack one target to those that lack one more, the least effort of the rest
+of the way is known for every node. Partial orders are then opened best first, with that as
+the exact cost of what is left, so that the cheapest orders come out one after the other.
 """
 
 import math

@@ -1,7 +1,7 @@
 """Kernels: a ladder graph over feasible arcs, refined from coarse to fine.
 
 Each target is a layer, each angle on one of its arcs a node. Every arc is divided evenly, ends
-included. In every round the dynamic programme gives the least effort of a chain *through* each node;
+included. In every round the dynamic programme gives the least effort of a chain through each node;
 nodes whose through-cost is among the lowest of their target are kept, and halves are put beside
 them. Divisions are nested, so no round's chain is dearer than the last one's.
 """

@@ -85,4 +85,5 @@ def _searched(nodes: Nodes, targets: int, seed: int) -> Indices:
     np.fill_diagonal(between, np.inf)
     most = min(ANNEAL_NEIGHBOURS, targets - 1)
     neighbours = np.ascontiguousarray(np.argsort(between.T, axis=1, kind="stable")[:, :most])
-    return np.asarray(anneal(nodes, order, chosen, neighbours, ANNEAL_TRIALS, seed)[0])
+    trials = ANNEAL_TRIALS * targets
+    return np.asarray(anneal(nodes, order, chosen, neighbours, trials, seed)[0])
