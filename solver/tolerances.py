@@ -127,7 +127,7 @@ nodes of the ladder graph, and more."""
 CHAIN_STILL_RAD: Final = 1e-8
 """Reach of a round of polishing below which nothing is gained any more [rad]."""
 
-CHAIN_ROUNDS: Final = 12
+CHAIN_ROUNDS: Final = 20
 """Most rounds of polishing."""
 
 CHAIN_GAIN_RELATIVE: Final = 1e-11
@@ -161,14 +161,14 @@ ANNEAL_LONGEST_RUN: Final = 3
 ANNEAL_LONGEST_TURN: Final = 50
 """Most targets that are turned about together."""
 
-ANNEAL_STEP_RAD: Final = 0.175
+ANNEAL_STEP_RAD: Final = 0.262
 """Distance of the approach angles that an order is searched with [rad]; finer ones cost more and
 end, for the same time, with dearer orders."""
 
 ANNEAL_NEIGHBOURS: Final = 12
 """Targets cheap to reach a target from, behind one of which a run is moved that begins with it."""
 
-ANNEAL_TRIALS: Final = 8_000
+ANNEAL_TRIALS: Final = 10_000
 """Moves tried for each target when an order is searched, about 1 us each."""
 
 EXACT_TARGETS: Final = 8

@@ -22,12 +22,12 @@ def feasible_batch(problem: Problem) -> Batch:
     return gather([task for task, _ in pairs], [arcs for _, arcs in pairs])
 
 
-def even_ladder_effort(problem: Problem, angles: int) -> float:
-    """Total effort of a ladder graph over even angles with straight cut-ins.
+def even_ladder_effort(problem: Problem, angles: int) -> tuple[float, int]:
+    """Total effort and number of targets of a ladder graph over even angles with straight cut-ins.
 
     What Tesseract's Descartes does: approach angles phi_k = -pi + 2 pi k / n, all branches, those
     kept whose whole cut-in is feasible, then the cheapest chain. Targets without such an angle are
-    left out.
+    left out: their number tells whether two efforts may be compared.
     """
     tasks, arcs = [], []
     for target in problem.targets:
@@ -43,8 +43,9 @@ def even_ladder_effort(problem: Problem, angles: int) -> float:
             tasks.append(task)
             arcs.append(own)
     if not tasks:
-        return 0.0
-    return float(refined_ladder(gather(tasks, arcs), np.arange(len(tasks)), 1.0, 1, 0)[2])
+        return 0.0, 0
+    effort = refined_ladder(gather(tasks, arcs), np.arange(len(tasks)), 1.0, 1, 0)[2]
+    return float(effort), len(tasks)
 
 
 def greedy_effort(problem: Problem) -> float:

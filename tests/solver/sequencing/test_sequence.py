@@ -140,5 +140,6 @@ def test_even_ladder_of_data_set_3_is_dearer_than_given(tabletop: Robot) -> None
     problem = Problem(tabletop, DATA_SET_3)
     batch, targets = batch_of(tabletop, list(DATA_SET_3))
     given = least_chain(batch, np.arange(len(targets))).effort
-    ladders = [even_ladder_effort(problem, angles) for angles in (36, 72, 144)]
+    ladders, counts = zip(*(even_ladder_effort(problem, n) for n in (36, 72, 144)), strict=True)
+    assert counts == (5, 5, 5)
     assert given < ladders[2] <= ladders[1] <= ladders[0] < 1.1 * given
