@@ -16,7 +16,7 @@ import llvmlite.binding as llvm
 import numba
 from numba.core import config
 
-_KERNEL_FOLDERS = ("kinematics", "approach")
+_KERNEL_FOLDERS = ("kinematics", "approach", "sequencing")
 
 
 def kernel_sources() -> tuple[Path, ...]:

@@ -1,4 +1,4 @@
-"""From a problem to a verified plan: one target after the other, each on its own feet."""
+"""From a problem to a verified plan, one target after the other."""
 
 import time
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ from solver.methods.candidate import Candidate
 from solver.problem import Problem, Target
 from solver.proposal import propose
 from solver.registry import METHODS
+from solver.sequencing.sequence import Stop, sequence
 from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, SolverReport
 from solver.tolerances import EXCHANGE_ROUNDS
 from solver.verification import judge
@@ -19,26 +20,56 @@ from solver.verification import judge
 def solve(problem: Problem) -> Plan:
     """The plan for a batch: an approach for every target, planned and verified or with a reason.
 
-    With order "given" each target starts from the previous planned standby (greedily), with
-    "independent" from the start posture.
+    With order "independent" every target starts from the start posture. With "given" and "optimal"
+    each starts from the previous planned standby, and the batch is planned as one, for the least
+    total effort, by the methods that choose among all approaches; the others go greedily, from
+    target to target.
     """
     started = time.perf_counter()
+    targets: Sequence[Target] = problem.targets
+    stops: dict[str, Stop] = {}
+    if problem.options.order == "optimal" or _as_one(problem):
+        stops = {stop.task.target.id: stop for stop in sequence(problem)}
+    if problem.options.order == "optimal":
+        by_id = {target.id: target for target in targets}
+        left_out = [target for target in targets if target.id not in stops]
+        targets = [*(by_id[name] for name in stops), *left_out]
     reference = problem.start
     approaches: list[Approach] = []
-    for target in problem.targets:
-        approach = plan_target(problem, target, reference)
+    for target in targets:
+        stop = stops.get(target.id) if _as_one(problem) else None
+        approach = plan_target(problem, target, reference, stop)
         approaches.append(approach)
-        chained = problem.options.order == "given" and approach.status == PLANNED
+        chained = problem.options.order != "independent" and approach.status == PLANNED
         if chained and approach.standby_joints is not None:
             reference = tuple(float(value) for value in approach.standby_joints)
-    return Plan(problem, tuple(approaches), time.perf_counter() - started)
+    return Plan(problem, _planned_first(problem, approaches), time.perf_counter() - started)
 
 
-def plan_target(problem: Problem, target: Target, reference: Sequence[float]) -> Approach:
-    """The approach to one target from a reference posture [rad]."""
+def _as_one(problem: Problem) -> bool:
+    """Whether approaches are chosen for the batch and not for each target."""
+    chained = problem.options.order != "independent"
+    return chained and METHODS[problem.options.method].chooses_among_arcs
+
+
+def _planned_first(problem: Problem, approaches: Sequence[Approach]) -> tuple[Approach, ...]:
+    """Infeasible targets keep their place when the order is given and come last when chosen."""
+    if problem.options.order != "optimal":
+        return tuple(approaches)
+    return tuple(sorted(approaches, key=lambda approach: approach.status != PLANNED))
+
+
+def plan_target(
+    problem: Problem, target: Target, reference: Sequence[float], stop: Stop | None = None
+) -> Approach:
+    """The approach to one target from a reference posture [rad]; its stop's, if it has one."""
     started = time.perf_counter()
     task = approach_task(problem, target, reference)
-    outcome, task = _solve_between_rows_too(task)
+    outcome: Candidate | Reason
+    if stop is None:
+        outcome, task = _solve_between_rows_too(task)
+    else:
+        outcome, task = stop.candidate, stop.task
     elapsed = time.perf_counter() - started
     method = problem.options.method
     if isinstance(outcome, Reason):

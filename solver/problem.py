@@ -14,7 +14,7 @@ from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.robots.model import Robot, Tool
 from solver.tolerances import LARGEST_STD_REACHES, SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
 
-ORDERS: Final = ("independent", "given")
+ORDERS: Final = ("independent", "given", "optimal")
 NORMS: Final = ("l1", "l2")
 WEIGHTS: Final = ("uniform",)
 INCLUDES: Final = ("path", "transfer", "trajectory")

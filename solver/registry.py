@@ -17,19 +17,28 @@ from solver.solution import Reason
 
 @dataclass(frozen=True)
 class Method:
-    """A way to solve one target's task definition."""
+    """A way to solve one target's task definition.
+
+    Attributes:
+        name: what requests call it.
+        summary: a line for people.
+        solve: a target's approach, or why there is none.
+        chooses_among_arcs: its choice is any approach on any feasible arc, so that a batch in a
+            given or chosen order is planned as one.
+    """
 
     name: str
     summary: str
     solve: Callable[[ApproachTask], Candidate | Reason]
+    chooses_among_arcs: bool = False
 
 
 _ROWS = (
     Method("fixed_z", "the approach along the world's x axis (T 3.4.1)", solve_fixed_z),
     Method("floating_z", "evenly spaced approach angles, all branches (T 3.4.2)", solve_floating_z),
     Method("as", "closed form, middle of the widest feasible arc (S remarks 1, 2)", solve_as),
-    Method("ssas", "closed form and the optimum over every feasible arc (S 3.2)", solve_ssas),
-    Method("ncos", "nonlinear programme in CasADi, warm-started by ssas (S 3.3)", solve_ncos),
+    Method("ssas", "closed form and the optimum over every feasible arc (S 3.2)", solve_ssas, True),
+    Method("ncos", "nonlinear programme in CasADi, warm-started by ssas (S 3.3)", solve_ncos, True),
 )
 
 METHODS: Final[Mapping[str, Method]] = MappingProxyType({row.name: row for row in _ROWS})

@@ -72,7 +72,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
     Args:
         problem: what was asked.
         approach: the answer for one of its targets.
-        reference: posture from which effort and transfer count: the start, or with order "given"
+        reference: posture from which effort and transfer count: the start, or unless independent
             the previous planned standby, shape (6,) [rad].
     """
     target = next((t for t in problem.targets if t.id == approach.target_id), None)
@@ -116,7 +116,7 @@ def verify_plan(plan: Plan) -> dict[str, Verification]:
         if approach.status != PLANNED:
             continue
         results[approach.target_id] = verify(plan.problem, approach, reference)
-        if plan.problem.options.order == "given" and approach.standby_joints is not None:
+        if plan.problem.options.order != "independent" and approach.standby_joints is not None:
             reference = tuple(approach.standby_joints)
     return results
 

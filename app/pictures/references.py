@@ -16,5 +16,5 @@ def planned_with_references(
         if approach["status"] != "planned":
             continue
         yield approach, targets[approach["target_id"]], reference
-        if plan["options"]["order"] == "given":
+        if plan["options"]["order"] != "independent":
             reference = approach["standby_joints"]

@@ -28,7 +28,6 @@ FAULTS: dict[str, tuple[tuple[str | int, ...], Any, str]] = {
     "unknown tool": (("tool",), MARKER, "#/tool"),
     "unknown method": (("options", "method"), MARKER, "#/options/method"),
     "unknown order": (("options", "order"), MARKER, "#/options/order"),
-    "order not built": (("options", "order"), "optimal", "#/options/order"),
     "unknown norm": (("options", "norm"), MARKER, "#/options/norm"),
     "unknown weights": (("options", "weights"), MARKER, "#/options/weights"),
     "unknown include": (("options", "include"), [MARKER], "#/options/include/0"),

@@ -3,11 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver import Options, Plan, Problem, Robot, Target, solve
+from solver import Options, Plan, Problem, Robot, Target, solve, verify_plan
 from solver.approach.task import approach_task
 from solver.cut_in import broken_limit
 from solver.methods.candidate import Candidate
 from solver.methods.semi_analytic import solve_ssas
+from solver.sequencing.comparison import greedy_effort
 from tests.solver.problems import DATA_SET_3, data_set_3, random_targets
 
 
@@ -118,3 +119,30 @@ def test_straightness_asked_for_is_kept(tabletop: Robot) -> None:
     assert plan.planned == 5
     deviations = [approach.path_deviation_m for approach in plan.approaches]
     assert all(deviation is not None and deviation <= 1e-6 for deviation in deviations)
+
+
+@pytest.mark.parametrize("method", ["floating_z", "ssas", "ncos"])
+def test_a_chosen_order_has_the_infeasible_last(tabletop: Robot, method: str) -> None:
+    far = Target("far", (0.0, 2.0, 0.1), (0, 0, 1))
+    options = Options(method=method, order="optimal")
+    plan = solve(Problem(tabletop, [far, *DATA_SET_3], options=options))
+    assert [a.status for a in plan.approaches] == [*["planned"] * 5, "infeasible"]
+    assert plan.approaches[-1].target_id == "far"
+    assert {a.target_id for a in plan.approaches} == {"far", "1", "2", "3", "4", "5"}
+    verified = verify_plan(plan)
+    assert len(verified) == 5
+    assert all(entry.accepted for entry in verified.values())
+
+
+@pytest.mark.parametrize("norm", ["l1", "l2"])
+def test_batches_planned_as_one_verify_and_are_cheaper_than_greedy(
+    tabletop: Robot, norm: str
+) -> None:
+    problem = Problem(
+        tabletop, random_targets(seed=45, count=40), options=Options(method="ssas", norm=norm)
+    )
+    plan = solve(problem)
+    assert plan.planned >= 10
+    assert all(entry.accepted for entry in verify_plan(plan).values())
+    assert [a.target_id for a in plan.approaches] == [t.id for t in problem.targets]
+    assert plan.total_effort < greedy_effort(problem)

@@ -41,7 +41,7 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
     ("options", "pointer"),
     [
         (Options(method="magic"), "#/options/method"),
-        (Options(order="optimal"), "#/options/order"),
+        (Options(order="alphabetical"), "#/options/order"),
         (Options(norm="l3"), "#/options/norm"),
         (Options(weights="torque"), "#/options/weights"),
         (Options(path_points=1), "#/options/path_points"),

@@ -1,0 +1,1 @@
+"""Batches: the ladder graph over every target's feasible arcs, and the order of targets."""
