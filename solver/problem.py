@@ -7,15 +7,17 @@ Lengths in metres, angles in radians, everything in the robot's base frame.
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Any, Final
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.robots.model import Robot, Tool
 from solver.tolerances import SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
+from solver.weights import torque_weights
 
 ORDERS: Final = ("independent", "given")
 NORMS: Final = ("l1", "l2")
-WEIGHTS: Final = ("uniform",)
+WEIGHTS: Final = ("uniform", "torque")
 INCLUDES: Final = ("path", "transfer", "trajectory")
 FULL_ANSWER_TARGETS: Final = 50
 MOST_WEIGHT: Final = 1e6
@@ -80,9 +82,10 @@ class Problem:
         faults: list[Fault] = []
         tool = self._resolve_tool(faults)
         object.__setattr__(self, "targets", tuple(self.targets))
-        start = self.robot.home_rad if self.start_joints is None else self.start_joints
+        start = self.robot.home_joints if self.start_joints is None else self.start_joints
         faults += _start_faults(self.robot, start)
         faults += _option_faults(self.options, len(self.robot.joints))
+        faults += _weight_faults(self.options, self.robot)
         faults += _target_faults(self.targets, self.robot.reach_m(tool))
         if faults:
             raise InvalidProblem(tuple(faults))
@@ -115,11 +118,13 @@ class Problem:
         assert self.start_joints is not None
         return tuple(self.start_joints)
 
-    @property
+    @cached_property
     def joint_weights(self) -> tuple[float, ...]:
         """The weight of each joint in the effort, resolved."""
         if self.options.joint_weights is not None:
             return tuple(float(weight) for weight in self.options.joint_weights)
+        if self.options.weights == "torque":
+            return torque_weights(self.robot, self.mounted_tool)
         return (1.0,) * len(self.robot.joints)
 
 
@@ -134,16 +139,23 @@ def _resolved(options: Options, problem: Problem) -> Options:
     return Options(**values)
 
 
+def _weight_faults(options: Options, robot: Robot) -> Iterable[Fault]:
+    wanted = options.weights == "torque" and options.joint_weights is None
+    if wanted and not robot.has_masses:
+        detail = f"the model of {robot.name} has no masses to take torques from"
+        yield Fault(("options", "weights"), detail)
+
+
 def _start_faults(robot: Robot, start: Sequence[float]) -> Iterable[Fault]:
     if problem := _vector_problem(start, len(robot.joints)):
         yield Fault(("start_joints",), problem)
         return
     for i, (joint, value) in enumerate(zip(robot.joints, start, strict=True)):
-        if not joint.lower_rad <= value <= joint.upper_rad:
+        if not joint.lower <= value <= joint.upper:
             yield Fault(
                 ("start_joints", i),
                 f"outside the limits of {joint.name}, "
-                f"{joint.lower_rad:.6g} to {joint.upper_rad:.6g} rad",
+                f"{joint.lower:.6g} to {joint.upper:.6g} {joint.unit}",
             )
 
 

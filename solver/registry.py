@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Final
 
 from solver.approach.task import ApproachTask
+from solver.methods.any_arm import on_any_arm
 from solver.methods.candidate import Candidate
 from solver.methods.floating_z import solve_floating_z
 from solver.methods.ncos import solve_ncos
@@ -23,8 +24,16 @@ class Method:
 
 
 _ROWS = (
-    Method("floating_z", "evenly spaced approach angles, all branches (T 3.4.2)", solve_floating_z),
-    Method("ssas", "closed form and the optimum over every feasible arc (S 3.2)", solve_ssas),
+    Method(
+        "floating_z",
+        "evenly spaced approach angles, all branches (T 3.4.2)",
+        on_any_arm(solve_floating_z),
+    ),
+    Method(
+        "ssas",
+        "closed form and the optimum over every feasible arc (S 3.2)",
+        on_any_arm(solve_ssas),
+    ),
     Method("ncos", "nonlinear programme in CasADi, warm-started by ssas (S 3.3)", solve_ncos),
 )
 

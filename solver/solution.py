@@ -18,6 +18,7 @@ REASON_CODES: Final = (
     "joint_limit",
     "standby_infeasible",
     "cut_in_infeasible",
+    "method_not_applicable",
     "solver_failed",
 )
 
@@ -58,7 +59,8 @@ class Transfer:
     Attributes:
         planner: how it was found.
         joints: its corner postures, shape (rows, joints) [rad].
-        length_rad: sum of the Euclidean lengths of its pieces in joint space [rad].
+        length_rad: sum of the Euclidean lengths of its pieces in the space of the revolute joints
+            [rad].
     """
 
     planner: str
@@ -99,12 +101,13 @@ class Approach:
     Attributes:
         approach_angle_rad: angle of the approach direction about the branch, in (-pi, pi].
         tool_side: 1, or -1 when a symmetric tool is turned about its axis by half a turn.
-        branch: number of the inverse kinematics branch, 0 to 7.
+        branch: number of the inverse kinematics branch, 0 to 7, on a rail that of the arm; None for
+            an arm without a closed form.
         path_joints: the cut-in, shape (path_points, joints): standby first, thinning last [rad].
         path_deviation_m: largest distance of the tool centre point from the straight line in the
             motion as executed, between its rows too.
         effort: weighted joint travel from the previous standby (or the start) to thinning.
-        margin_rad: smallest distance of a joint to its limit in the whole cut-in.
+        margin_rad: smallest distance of a revolute joint to its limit in the whole cut-in.
     """
 
     target_id: str

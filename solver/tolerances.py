@@ -79,6 +79,45 @@ EXCHANGE_ZOOMS: Final = 4
 ARC_PIECES: Final = 8
 """Pieces at least in which the effort of an arc is sampled; long arcs have one for 0.5 degrees."""
 
+# --- Arms without a closed form, arms on a rail, weights -----------------------------------------
+RAIL_POSITIONS: Final = 25
+"""Positions of a slide tried with the closed form: 5 cm apart on 1.2 m. Not an optimum in the slide;
+`ncos` starts from the best of them."""
+
+WEIGHT_POSTURES: Final = 4096
+"""Postures over which torques are averaged for the weights: the mean is sure to about 1 %."""
+
+WEIGHT_SEED: Final = 0
+"""Seed of those postures, fixed so that the weights are those of the robot and its tool."""
+
+NUMERICAL_STARTS: Final = 64
+"""Start postures of the numerical inverse for each tool side. On 200 seeded reachable targets of a
+UR5 the share solved no longer grows from 32 on."""
+
+NUMERICAL_REACH_STEPS: Final = 40
+"""Damped steps towards the target from each start; from half the joint range 15 are usual."""
+
+NUMERICAL_PULL_STEPS: Final = 60
+"""Steps that lean towards the reference posture while the tool stays at the target."""
+
+NUMERICAL_PULL_SHARE: Final = 0.3
+"""Share of the way to the reference that such a step leans; smaller ones only take longer."""
+
+NUMERICAL_MOST_STEP: Final = 0.5
+"""Largest joint step [rad or m]: the Jacobian says nothing about what is further away."""
+
+NUMERICAL_DAMPING: Final = 1e-9
+"""Damping left at the target; half the squared error is added on the way there (Sugihara 2011)."""
+
+NUMERICAL_REACHED: Final = 1e-3
+"""Error [m and rad] below which a start has come to the target and is polished."""
+
+NUMERICAL_POLISHED: Final = 1e-12
+"""Error [m and rad] of a polished posture: rounding, six orders below what the verifier allows."""
+
+NUMERICAL_POLISH_STEPS: Final = 12
+"""Newton steps allowed for it; the error is squared in each, so 3 or 4 are usual."""
+
 # --- Nonlinear programme ------------------------------------------------------------------------
 NLP_TOLERANCE: Final = 1e-9
 """IPOPT's overall error: below the verifier's by three orders in metres and radians."""

@@ -11,10 +11,12 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from solver.approach.frame import approach_frame
+from solver.approach.numerical import same_side
 from solver.cut_in import line_deviation
 from solver.effort import posture_effort
+from solver.kinematics.families import has_branches, rail_of
 from solver.kinematics.forward import forward_kinematics
-from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.kinematics.spherical_wrist import BRANCHES, inverse_kinematics
 from solver.problem import Problem, Target
 from solver.robots.model import Array
 from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, Trajectory, Transfer
@@ -71,7 +73,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         problem: what was asked.
         approach: the answer for one of its targets.
         reference: posture from which effort and transfer count: the start, or with order "given"
-            the previous planned standby, shape (6,) [rad].
+            the previous planned standby, shape (joints,) [rad or m].
     """
     target = next((t for t in problem.targets if t.id == approach.target_id), None)
     claim = _claim(approach)
@@ -119,11 +121,11 @@ def verify_plan(plan: Plan) -> dict[str, Verification]:
 
 @dataclass(frozen=True)
 class _Claim:
-    """The fields of an approach that claims to be planned, all there."""
+    """The fields of an approach that claims to be planned; only the branch may be absent."""
 
     approach_angle_rad: float
     tool_side: int
-    branch: int
+    branch: int | None
     thinning_joints: Array
     standby_joints: Array
     path_joints: Array
@@ -136,7 +138,8 @@ class _Claim:
 
 def _claim(approach: Approach) -> _Claim | None:
     values = {entry.name: getattr(approach, entry.name) for entry in fields(_Claim)}
-    return None if any(value is None for value in values.values()) else _Claim(**values)
+    missing = any(value is None for name, value in values.items() if name != "branch")
+    return None if missing else _Claim(**values)
 
 
 def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
@@ -185,8 +188,24 @@ def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator
     spacing = options.standoff_m / (options.path_points - 1)
     rate = float(np.abs(np.diff(rows, axis=0)).max()) / spacing
     yield Residual("wrist_jump_rad_m", rate, JOINT_RATE_RAD_M)
-    for name, pose, row in (("standby", poses[0], rows[0]), ("thinning", poses[-1], rows[-1])):
-        found = inverse_kinematics(robot, tool, pose[None]).joints[0, claim.branch]
+    yield from _branch_residuals(problem, claim, poses)
+
+
+def _branch_residuals(problem: Problem, claim: _Claim, poses: Array) -> Iterator[Residual]:
+    """The branch claimed, at both ends; for an arm without branches, that its rows hang together."""
+    robot, tool, rows = problem.robot, problem.mounted_tool, np.asarray(claim.path_joints)
+    known = claim.branch is not None and 0 <= claim.branch < BRANCHES
+    if known != has_branches(robot, tool) or (claim.branch is not None and not known):
+        yield Residual("branch_exists", 1.0, 0.0)
+        return
+    if claim.branch is None:
+        yield Residual("branch_continuity", float(not same_side(robot, tool, rows)), 0.0)
+        return
+    rail = rail_of(robot, tool)
+    for name, end in (("standby", 0), ("thinning", -1)):
+        row = rows[end] if rail is None else rows[end, 1:]
+        arm = robot if rail is None else rail.arm_at(float(rows[end, 0]))
+        found = inverse_kinematics(arm, tool, poses[end][None]).joints[0, claim.branch]
         turned = np.abs(np.remainder(found - row + np.pi, 2 * np.pi) - np.pi).max()
         yield Residual(f"{name}_branch_rad", float(turned), SAME_BRANCH_RAD)
 
@@ -206,10 +225,13 @@ def _number_residuals(
 
 
 def cut_in_margin(problem: Problem, path_joints: Array, trajectory: Trajectory) -> float:
-    """Smallest distance of a joint to its limit over the rows and the executed cut-in [rad]."""
+    """Smallest distance of a revolute joint to its limit, in the rows and as executed [rad].
+
+    Prismatic joints have no margin in an angle; `trajectory_limit_excess` covers them.
+    """
     executed = segment_rows(trajectory, "cut_in", "dwell", "retreat")[1]
     rows = np.concatenate((path_joints, executed))
-    return float(np.minimum(rows - problem.robot.lower, problem.robot.upper - rows).min())
+    return float(problem.robot.limit_margin(rows).min())
 
 
 def segment_rows(trajectory: Trajectory, first: str, *others: str) -> tuple[Array, Array]:
@@ -245,7 +267,7 @@ def _motion_residuals(
         np.abs(transfer.joints[0] - reference).max(), np.abs(transfer.joints[-1] - standby).max()
     )
     yield Residual("transfer_corners_rad", float(corners), SAME_POSTURE_RAD)
-    rows = trajectory.joints
+    rows = np.concatenate((trajectory.joints, claim.path_joints))
     outside = float(np.maximum(robot.lower - rows, rows - robot.upper).max())
     yield Residual("trajectory_limit_excess_rad", outside, LIMIT_EXCESS_RAD)
     dwell_times, dwell_rows = segment_rows(trajectory, "dwell")

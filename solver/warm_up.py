@@ -3,18 +3,39 @@
 Run as `python -m solver.warm_up` at set-up; kernels stay compiled on disk.
 """
 
+from solver.problem import Target
+from solver.robots.model import Robot
+
 
 def warm_up() -> None:
-    """Solves one small problem by every method for each shipped robot, in this process."""
-    from solver import Options, Problem, Target, load_robot, robot_names, solve
+    """Solves one small problem by every method for each robot, in this process."""
+    from solver import Options, Problem, load_robot, robot_names, solve
+    from solver.approach.numerical import numerical_warm_start
+    from solver.approach.task import approach_task
     from solver.registry import METHODS
 
     for name in robot_names():
         robot = load_robot(name)
-        target = Target("warm-up", (0.185, -0.057, 0.42), (-1.0, -1.0, 1.0))
+        targets = [home_target(robot)]
         for method in METHODS:
             for norm in ("l1", "l2"):
-                solve(Problem(robot, [target], options=Options(method=method, norm=norm)))
+                solve(Problem(robot, targets, options=Options(method=method, norm=norm)))
+    # No robot that ships needs the numerical inverse; one brought by somebody may.
+    problem = Problem(robot, targets)
+    numerical_warm_start(approach_task(problem, targets[0], problem.start))
+
+
+def home_target(robot: Robot) -> Target:
+    """A target that fits every robot: where its tool is at home, with a branch across the tool."""
+    import numpy as np
+
+    from solver.kinematics.forward import forward_kinematics
+
+    tool = robot.tool(robot.default_tool)
+    assert tool is not None, "parse_robot checks it"
+    pose = forward_kinematics(robot, tool, np.array(robot.home_joints))
+    position, across = pose[:3, 3].tolist(), pose[:3, 1].tolist()
+    return Target("warm-up", position, across)
 
 
 if __name__ == "__main__":

@@ -76,8 +76,8 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
                 alpha_rad=joint.alpha_rad,
                 d_m=joint.d_m,
                 offset_rad=joint.offset_rad,
-                lower_rad=joint.lower_rad,
-                upper_rad=joint.upper_rad,
+                lower_rad=joint.lower,
+                upper_rad=joint.upper,
                 velocity_rad_s=joint.velocity_rad_s,
                 acceleration_rad_s2=joint.acceleration_rad_s2,
             )
@@ -93,6 +93,6 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
             for tool in robot.tools
         ],
         default_tool=robot.default_tool,
-        home_joints=list(robot.home_rad),
+        home_joints=list(robot.home_joints),
         calibration_rad=calibration_rad,
     )

@@ -11,6 +11,7 @@ from solver.approach.frame import ApproachFrame, approach_frame
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Options, Problem, Target
 from solver.robots.model import Array, Robot, Tool
+from solver.robots.rigid import inverse
 
 
 @dataclass(frozen=True)
@@ -42,24 +43,25 @@ class ApproachTask:
 
     @cached_property
     def lower(self) -> Array:
-        """Lower limits with the margin asked for taken off, shape (6,) [rad]."""
-        return np.asarray(self.robot.lower + self.options.limit_margin_rad)
+        """Lower limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
+        return np.asarray(self.robot.lower + self.options.limit_margin_rad * self.robot.turning)
 
     @cached_property
     def upper(self) -> Array:
-        """Upper limits with the margin asked for taken off, shape (6,) [rad]."""
-        return np.asarray(self.robot.upper - self.options.limit_margin_rad)
+        """Upper limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
+        return np.asarray(self.robot.upper - self.options.limit_margin_rad * self.robot.turning)
 
     def for_kernels(self, tool_side: int) -> CutInTask:
-        """The task as the kernels take it, with the tool on one side."""
+        """The task as the kernels take it, with the tool on one side, in the mount's frame."""
+        mount = inverse(self.robot.mount)
         return CutInTask(
             geometry=wrist_geometry(self.robot, self.tool),
             lower=self.lower,
             upper=self.upper,
-            position=np.asarray(self.target.position_m, dtype=np.float64),
-            y_axis=tool_side * self.frame.branch,
-            outward=self.frame.outward,
-            sideways=self.frame.sideways,
+            position=mount[:3, :3] @ np.asarray(self.target.position_m) + mount[:3, 3],
+            y_axis=mount[:3, :3] @ (tool_side * self.frame.branch),
+            outward=mount[:3, :3] @ self.frame.outward,
+            sideways=mount[:3, :3] @ self.frame.sideways,
             retreats=np.asarray(self.retreats_m),
             reference=np.asarray(self.reference),
             weights=np.asarray(self.joint_weights),

@@ -35,7 +35,8 @@ from numpy.typing import NDArray
 
 from solver.compiled import kernel
 from solver.exceptions import UnsupportedKinematics
-from solver.robots.model import Array, Robot, Tool
+from solver.robots.model import REVOLUTE, Array, Robot, Tool
+from solver.robots.rigid import inverse
 from solver.tolerances import REACH_ROUNDING_M, RIGHT_ANGLE_RAD, SINGULAR_WRIST
 
 BRANCHES: Final = 8
@@ -90,6 +91,8 @@ def wrist_geometry(robot: Robot, tool: Tool) -> WristGeometry:
     """
     if len(robot.joints) != 6:
         raise UnsupportedKinematics(robot.name, f"{len(robot.joints)} joints instead of six")
+    if any(joint.kind != REVOLUTE for joint in robot.joints):
+        raise UnsupportedKinematics(robot.name, "a joint slides")
     j1, j2, j3, j4, j5, j6 = robot.joints
     zeros = {
         "a4": j4.a_m,
@@ -137,7 +140,7 @@ def inverse_kinematics(robot: Robot, tool: Tool, poses: Array) -> InverseSolutio
         UnsupportedKinematics: the arm is not of the family that the module documents.
     """
     geometry = wrist_geometry(robot, tool)
-    poses = np.ascontiguousarray(poses, dtype=np.float64)
+    poses = np.ascontiguousarray(inverse(robot.mount) @ poses, dtype=np.float64)
     joints = np.empty((len(poses), BRANCHES, 6))
     margins = np.empty((len(poses), BRANCHES // 2))
     singular = np.empty((len(poses), BRANCHES), dtype=np.bool_)

@@ -8,8 +8,11 @@ from dataclasses import replace
 from solver.approach.frame import signed_angle
 from solver.approach.task import ApproachTask
 from solver.effort import posture_effort
+from solver.kinematics.families import has_closed_form, rail_of
+from solver.methods.any_arm import over_rail
 from solver.methods.candidate import Candidate
-from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, why_none
+from solver.methods.other_arm import solve_other_arm
+from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, solve_ssas, why_none
 from solver.nlp.backends import ProgrammeResult, solve_programme
 from solver.solution import Reason
 
@@ -22,6 +25,10 @@ def solve_ncos(task: ApproachTask) -> Candidate | Reason:
     into the warm start's feasible arc. The answer is therefore never dearer than the warm start,
     and `status` says which of the two it is.
     """
+    if (rail := rail_of(task.robot, task.tool)) is not None:
+        return over_rail(task, rail, solve_ssas)
+    if not has_closed_form(task.robot, task.tool):
+        return solve_other_arm(task)
     warm_start = best_on_arcs(task)
     if warm_start is None:
         return why_none(task)

@@ -10,7 +10,7 @@ import numpy as np
 from solver.approach.task import ApproachTask
 from solver.methods.semi_analytic import ArcOptimum
 from solver.nlp.formulation import Programme, build_programme
-from solver.robots.model import Robot
+from solver.robots.model import Array, Robot
 from solver.tolerances import NLP_BARRIER, NLP_BOUND_PUSH, NLP_ITERATIONS, NLP_TOLERANCE
 
 
@@ -22,6 +22,7 @@ class ProgrammeResult:
     status: str
     iterations: int
     approach_angle_rad: float
+    thinning_joints: Array
 
 
 @dataclass(frozen=True)
@@ -52,17 +53,38 @@ def _solver(robot: Robot, norm: str) -> _Solver:
     return _Solver(programme, ca.nlpsol("task_definition", "ipopt", programme.nlp, options))
 
 
+@dataclass(frozen=True)
+class ProgrammeStart:
+    """Where the programme starts: both postures, shape (n,), the angle, and that angle's bounds."""
+
+    standby: Array
+    thinning: Array
+    tool_side: int
+    angle_rad: float
+    lower_rad: float
+    upper_rad: float
+
+
 def solve_programme(task: ApproachTask, warm_start: ArcOptimum) -> ProgrammeResult:
     """Solves the task's programme from the closed form's optimum, on that optimum's arc."""
-    solver = _solver(task.robot, task.options.norm)
-    arc = warm_start.arc
+    arc, angle = warm_start.arc, warm_start.angle_rad
     ends = np.array([task.options.standoff_m, 0.0])
-    standby, thinning = task.postures(warm_start.angle_rad, arc.tool_side, arc.branch, ends)
+    standby, thinning = task.postures(angle, arc.tool_side, arc.branch, ends)
+    return run_programme(
+        task,
+        ProgrammeStart(standby, thinning, arc.tool_side, angle, arc.lower_rad, arc.upper_rad),
+    )
+
+
+def run_programme(task: ApproachTask, start: ProgrammeStart) -> ProgrammeResult:
+    """Solves the task's programme from a start, for any arm."""
+    solver = _solver(task.robot, task.options.norm)
+    standby, thinning = start.standby, start.thinning
     reference, slacks = np.asarray(task.reference), solver.programme.slacks
     frame = task.frame
-    x0 = [thinning, standby, np.array([warm_start.angle_rad])]
-    lower = [task.lower, task.lower, np.array([arc.lower_rad])]
-    upper = [task.upper, task.upper, np.array([arc.upper_rad])]
+    x0 = [thinning, standby, np.array([start.angle_rad])]
+    lower = [task.lower, task.lower, np.array([start.lower_rad])]
+    upper = [task.upper, task.upper, np.array([start.upper_rad])]
     if slacks:
         x0.append(np.abs(thinning - reference))
         lower.append(np.zeros(slacks))
@@ -70,7 +92,7 @@ def solve_programme(task: ApproachTask, warm_start: ArcOptimum) -> ProgrammeResu
     parameters = np.concatenate(
         [
             np.asarray(task.target.position_m, dtype=np.float64),
-            arc.tool_side * frame.branch,
+            start.tool_side * frame.branch,
             frame.outward,
             frame.sideways,
             reference,
@@ -88,7 +110,11 @@ def solve_programme(task: ApproachTask, warm_start: ArcOptimum) -> ProgrammeResu
         ubg=np.concatenate([np.zeros(equalities), np.full(2 * slacks, np.inf)]),
     )
     stats = solver.function.stats()
-    angle = float(answer["x"][2 * len(task.robot.joints)])
+    n = len(task.robot.joints)
     return ProgrammeResult(
-        bool(stats["success"]), str(stats["return_status"]), int(stats["iter_count"]), angle
+        bool(stats["success"]),
+        str(stats["return_status"]),
+        int(stats["iter_count"]),
+        float(answer["x"][2 * n]),
+        np.asarray(answer["x"][:n]).ravel(),
     )

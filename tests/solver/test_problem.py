@@ -74,7 +74,7 @@ def test_all_faults_are_told_at_once(tabletop: Robot) -> None:
 def test_defaults_are_resolved(tabletop: Robot) -> None:
     problem = Problem(tabletop, [GOOD])
     assert problem.mounted_tool.name == "laser"
-    assert problem.start == tabletop.home_rad
+    assert problem.start == tabletop.home_joints
     assert problem.joint_weights == (1.0,) * 6
     assert problem.options.include == ("path", "transfer", "trajectory")
     many = [Target(str(k), GOOD.position_m, GOOD.branch_direction) for k in range(51)]

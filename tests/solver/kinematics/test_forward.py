@@ -28,7 +28,7 @@ def test_pose_of_the_thesis_start(tabletop: Robot) -> None:
     """T's program, data set 3: start at (11.6, 0, 39.5) cm with axes -x, -y, z."""
     tool = tabletop.tool("laser")
     assert tool is not None
-    pose = forward_kinematics(tabletop, tool, np.array(tabletop.home_rad))
+    pose = forward_kinematics(tabletop, tool, np.array(tabletop.home_joints))
     np.testing.assert_allclose(pose[:3, 3], (0.116, 0.0, 0.395), atol=1e-5)
     np.testing.assert_allclose(pose[:3, :3], np.diag((-1.0, -1.0, 1.0)), atol=1e-4)
 

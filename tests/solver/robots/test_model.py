@@ -50,8 +50,8 @@ def test_unknown_robot_names_the_known_ones() -> None:
         ("velocity_rad_s = 2.0", "velocity_rad_s = 0.0", "speed limits"),
         ("velocity_rad_s = 2.0", "velocity_rad_s = 2.0\ncolour = 1", "colour"),
         ('default_tool = "laser"', 'default_tool = "saw"', "saw"),
-        ("home_rad = [0.0, 1.57", "home_rad = [0.0, 3.57", "home is outside"),
-        ("home_rad = [0.0, ", "home_rad = [", "needs 6 values"),
+        ("home_joints = [0.0, 1.57", "home_joints = [0.0, 3.57", "home is outside"),
+        ("home_joints = [0.0, ", "home_joints = [", "needs 6 values"),
     ],
 )
 def test_broken_model_files_are_refused(old: str, new: str, message: str) -> None:
