@@ -65,7 +65,11 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
 
 
 def retreat_rows(
-    robot: Robot, tool: Tool, thinning: Sequence[float], branch: int | None, retreats: Array
+    robot: Robot,
+    tool: Tool,
+    thinning: Sequence[float] | Array,
+    branch: int | None,
+    retreats: Array,
 ) -> Array:
     """Postures straight behind a thinning posture, with its orientation, on its branch.
 

@@ -27,7 +27,7 @@ BRANCHES = range(8)
 
 @dataclass(frozen=True)
 class ChosenApproach:
-    """What was chosen for one target, with its two postures [rad or m]; no branch if it has none."""
+    """What was chosen for one target, with its postures [rad or m], and branch if the arm has any."""
 
     target_id: str
     approach_angle_rad: float

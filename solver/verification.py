@@ -192,7 +192,7 @@ def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator
 
 
 def _branch_residuals(problem: Problem, claim: _Claim, poses: Array) -> Iterator[Residual]:
-    """The branch claimed, at both ends; for an arm without branches, that its rows hang together."""
+    """The branch claimed, at both ends; of an arm without branches, that its rows hang together."""
     robot, tool, rows = problem.robot, problem.mounted_tool, np.asarray(claim.path_joints)
     known = claim.branch is not None and 0 <= claim.branch < BRANCHES
     if known != has_branches(robot, tool) or (claim.branch is not None and not known):

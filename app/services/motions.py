@@ -47,7 +47,7 @@ def _problem(request: Mapping[str, Any], plan: Mapping[str, Any]) -> Problem:
 
 def _chosen(entry: Mapping[str, Any]) -> ChosenApproach:
     # An arm without a closed form has no branch, and what is absent is left out of a plan.
-    values = {name: entry.get(name) for name in ChosenApproach.__dataclass_fields__}
+    values: dict[str, Any] = {name: entry.get(name) for name in ChosenApproach.__dataclass_fields__}
     return ChosenApproach(**values)
 
 

@@ -1,8 +1,9 @@
 """Kernels: any serial chain, its pose, its Jacobian and Newton's method on them.
 
-For arms that `solver.kinematics.spherical_wrist` does not cover, with any number of joints. A pose's
-error has three rows of position [m] and three of the rotation vector that is left [rad]. Steps are
-damped least squares, dq = J^T (J J^T + damping I)^-1 e: the shortest step where joints are redundant.
+For arms that `solver.kinematics.spherical_wrist` does not cover, with any number of joints. A
+pose's error has three rows of position [m] and three of the rotation vector that is left [rad].
+Steps are damped least squares, dq = J^T (J J^T + damping I)^-1 e: the shortest step where joints
+are redundant.
 """
 
 import math
@@ -51,7 +52,7 @@ def chain_of(robot: Robot, tool: Tool) -> Chain:
 
 
 def postures_behind(robot: Robot, tool: Tool, thinning: Array, retreats: Array) -> Array:
-    """Postures straight behind a thinning posture, each found from its neighbour by Newton's method.
+    """Postures straight behind a thinning posture, each from its neighbour by Newton's method.
 
     Args:
         robot: any arm.

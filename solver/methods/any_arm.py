@@ -58,8 +58,8 @@ def not_applicable(task: ApproachTask) -> Reason:
     """The reason for an arm without a closed form."""
     return Reason(
         "method_not_applicable",
-        f"{task.options.method} needs the closed form of a spherical wrist, which {task.robot.name} "
-        "does not have; ncos starts from a numerical inverse instead",
+        f"{task.options.method} needs the closed form of a spherical wrist, which "
+        f"{task.robot.name} does not have; ncos starts from a numerical inverse instead",
     )
 
 

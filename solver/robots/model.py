@@ -1,8 +1,8 @@
 """The robot model: one TOML file a robot, read into frozen dataclasses.
 
 Classic (standard) Denavit-Hartenberg convention: the transform of link i is
-Rot_z(theta_i) Trans_z(d_i) Trans_x(a_i) Rot_x(alpha_i) (T equation 1). A revolute joint turns, theta =
-q + offset; a prismatic joint slides along the same z axis, d = q + d_m, with theta = offset.
+Rot_z(theta_i) Trans_z(d_i) Trans_x(a_i) Rot_x(alpha_i) (T equation 1). A revolute joint turns,
+theta = q + offset; a prismatic joint slides along the same z axis, d = q + d_m, theta = offset.
 Joint vectors are radians for revolute and metres for prismatic joints.
 """
 
@@ -233,14 +233,15 @@ def parse_robot(document: bytes) -> Robot:
     try:
         data = tomllib.loads(document.decode())
         mount = data.pop("mount_position_m", (0.0, 0.0, 0.0))
-        turn = data.pop("mount_rpy_deg", (0.0, 0.0, 0.0))
+        in_degrees = [math.radians(value) for value in data.pop("mount_rpy_deg", (0.0, 0.0, 0.0))]
+        turn = data.pop("mount_rpy_rad", in_degrees)
         robot = Robot(
             joints=tuple(_joint(entry) for entry in data.pop("joints")),
             tools=tuple(Tool(**entry) for entry in data.pop("tools")),
             home_joints=_numbers(data.pop("home_joints")),
             version=hashlib.sha256(document).hexdigest()[:12],
             mount_position_m=_three(mount),
-            mount_rpy_rad=_three([math.radians(value) for value in turn]),
+            mount_rpy_rad=_three(turn),
             **data,
         )
         check_robot(robot)
@@ -275,7 +276,9 @@ def _link(entry: Mapping[str, Any], kind: str) -> Link:
     drive = float(values.pop(_DRIVE_KEYS[kind], 0.0))
     centre = _three(values.pop("centre_m"))
     xx, yy, zz, xy, xz, yz = _numbers(values.pop("inertia_kg_m2"))
-    return Link(centre_m=centre, inertia_kg_m2=(xx, yy, zz, xy, xz, yz), drive_inertia=drive, **values)
+    return Link(
+        centre_m=centre, inertia_kg_m2=(xx, yy, zz, xy, xz, yz), drive_inertia=drive, **values
+    )
 
 
 def check_robot(robot: Robot) -> None:

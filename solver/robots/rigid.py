@@ -1,4 +1,4 @@
-"""Rigid transforms from positions and roll, pitch, yaw angles, and back (the convention of URDF)."""
+"""Rigid transforms from positions and roll, pitch, yaw angles, and back (URDF's convention)."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from solver.tolerances import EXACT_ZERO
 Array = NDArray[np.float64]
 
 
-def transform(position_m: Sequence[float], rpy_rad: Sequence[float]) -> Array:
+def transform(position_m: Sequence[float] | Array, rpy_rad: Sequence[float]) -> Array:
     """The frame at a position, turned about the fixed axes x, then y, then z; shape (4, 4)."""
     (roll_c, roll_s), (pitch_c, pitch_s), (yaw_c, yaw_s) = (_circle(angle) for angle in rpy_rad)
     about_x = np.array([[1, 0, 0], [0, roll_c, -roll_s], [0, roll_s, roll_c]])
@@ -43,7 +43,7 @@ def roll_pitch_yaw(turn: Array) -> tuple[float, float, float]:
     With the pitch at a right angle the roll is zero and the yaw has the whole turn.
     """
     cos_pitch = math.hypot(turn[0, 0], turn[1, 0])
-    pitch = math.atan2(-turn[2, 0], cos_pitch)
+    pitch = math.atan2(0.0 - turn[2, 0], cos_pitch)  # 0.0 - x and not -x: no negative zero
     if cos_pitch < math.sqrt(EXACT_ZERO):
         return 0.0, pitch, math.atan2(-turn[0, 1], turn[1, 1])
     return math.atan2(turn[2, 1], turn[2, 2]), pitch, math.atan2(turn[1, 0], turn[0, 0])
