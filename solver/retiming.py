@@ -27,7 +27,7 @@ BRANCHES = range(8)
 
 @dataclass(frozen=True)
 class ChosenApproach:
-    """What was chosen for one target, with its postures [rad or m], and branch if the arm has any."""
+    """What was chosen for one target; an arm without a closed form has no branch [rad or m]."""
 
     target_id: str
     approach_angle_rad: float

@@ -115,6 +115,13 @@ NUMERICAL_REACHED: Final = 1e-3
 NUMERICAL_POLISHED: Final = 1e-12
 """Error [m and rad] of a polished posture: rounding, six orders below what the verifier allows."""
 
+NUMERICAL_FOLLOWED: Final = 1e-10
+"""Error [m and rad] above which a row of a cut-in was not reached from its neighbour."""
+
+NUMERICAL_MOST_PIECES: Final = 64
+"""Most pieces into which the way from that neighbour is cut, by fours: 2 mm to 30 um. A joint that
+turns too fast for that is beyond JOINT_RATE_RAD_M."""
+
 NUMERICAL_POLISH_STEPS: Final = 12
 """Newton steps allowed for it; the error is squared in each, so 3 or 4 are usual."""
 

@@ -108,29 +108,45 @@ def nearest_turn(chain, family, q):
 
 
 @kernel
-def from_starts(chain, family, starts, angles, errors):
-    """Leads every start, in place, to the target; fills angles and errors, shape (starts,).
+def arrive(chain, family, angle, q):
+    """Brings q, in place, from nearly at the target onto it; returns the error left [m and rad].
 
-    First straight to it, then leaning towards the reference, then straight again, at last Newton's
-    method at a fixed approach angle, which does not look at limits.
+    On the turns nearest to the reference, by Newton's method at a fixed approach angle, which does
+    not look at limits. A posture that is not nearly there is left as it is.
+    """
+    n = len(q)
+    axes, frames, error = np.empty((3, 3)), np.empty((n + 1, 4, 4)), np.empty(6)
+    tool_axes(family, angle, axes)
+    locate(chain, q, frames)
+    left = pose_error(frames[n], family.position, axes, error)
+    if left >= NUMERICAL_REACHED:
+        return left
+    nearest_turn(chain, family, q)
+    return polish(chain, family.position, axes, np.ones(n), q)
+
+
+@kernel
+def from_starts(chain, family, starts, angles, postures, errors):
+    """Leads every start to the target, straight to it and then leaning towards the reference.
+
+    Starts, shape (k, n), and their angles, shape (2 k,), whose second half repeats the first, are
+    changed. Fills postures, shape (2 k, n), and errors, shape (2 k,): the first half as the starts
+    arrived, the second after they leaned, which brings them to few places of little effort. Where
+    the cut-in does not hold there, it may at one of the first half.
     """
     count, n = starts.shape
     axes, frames = np.empty((3, 3)), np.empty((n + 1, 4, 4))
     columns = np.empty((6, n + 1))
-    steps = 2 * NUMERICAL_REACH_STEPS + NUMERICAL_PULL_STEPS
     for k in range(count):
         q, angle = starts[k], angles[k]
-        for step in range(steps):
-            pulling = NUMERICAL_REACH_STEPS <= step < NUMERICAL_REACH_STEPS + NUMERICAL_PULL_STEPS
-            share = NUMERICAL_PULL_SHARE if pulling else 0.0
-            tool_axes(family, angle, axes)
-            turned = step_towards(chain, family, axes, share, q, columns, frames)
-            angle += turned
-        tool_axes(family, angle, axes)
-        locate(chain, q, frames)
-        error = np.empty(6)
-        errors[k] = pose_error(frames[n], family.position, axes, error)
-        if errors[k] < NUMERICAL_REACHED:
-            nearest_turn(chain, family, q)
-            errors[k] = polish(chain, family.position, axes, q)
-        angles[k] = angle
+        for phase in range(3):
+            leaning = phase == 1
+            steps = NUMERICAL_PULL_STEPS if leaning else NUMERICAL_REACH_STEPS
+            share = NUMERICAL_PULL_SHARE if leaning else 0.0
+            for _ in range(steps):
+                tool_axes(family, angle, axes)
+                angle += step_towards(chain, family, axes, share, q, columns, frames)
+            if not leaning:
+                row = k if phase == 0 else count + k
+                postures[row], angles[row] = q, angle
+                errors[row] = arrive(chain, family, angle, postures[row])

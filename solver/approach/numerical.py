@@ -9,7 +9,13 @@ from solver.approach.frame import signed_angle
 from solver.approach.multi_start import PoseFamily, from_starts
 from solver.approach.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics, jacobian
-from solver.kinematics.numerical import chain_of, polish, postures_behind
+from solver.kinematics.numerical import (
+    chain_of,
+    free_joints,
+    locate,
+    polish,
+    postures_behind,
+)
 from solver.robots.model import Array, Robot, Tool
 from solver.solution import Reason
 from solver.tolerances import (
@@ -90,21 +96,31 @@ def polished_thinning(
     q = np.array(near, dtype=np.float64)
     axes = np.ascontiguousarray(task.frame.axes(approach_angle_rad, tool_side))
     chain = chain_of(task.robot, task.tool)
-    error = polish(chain, np.asarray(task.target.position_m, dtype=np.float64), axes, q)
+    position = np.asarray(task.target.position_m, dtype=np.float64)
+    error = polish(chain, position, axes, np.ones(len(q)), q)
     rows = postures_behind(task.robot, task.tool, q, np.asarray(task.retreats_m))
     holds = error <= POSITION_ERROR_M and _cut_in_holds(task, rows, _Stages())
     return q if holds else None
 
 
 def same_side(robot: Robot, tool: Tool, rows: Array) -> bool:
-    """Whether no row is across a singularity from its neighbour: det J keeps its sign.
+    """Whether no row is across a singularity from the last: det J keeps its sign.
 
-    For arms with six joints, rows of shape (k, 6); with others det J does not exist, and whether
-    the rows hang together is told by their steps alone.
+    J has the columns of the six joints that move on a cut-in to the last row; arms with fewer have
+    no such determinant, and whether their rows hang together is told by their steps alone.
+
+    Args:
+        robot: any arm.
+        tool: its tool.
+        rows: postures of a cut-in, shape (k, n) [rad or m].
     """
-    if len(robot.joints) != _SQUARE:
+    if len(robot.joints) < _SQUARE:
         return True
-    signs = np.sign(np.linalg.det(jacobian(robot, tool, rows)))
+    chain = chain_of(robot, tool)
+    frames, columns = np.empty((rows.shape[1] + 1, 4, 4)), np.empty((_SQUARE, rows.shape[1]))
+    locate(chain, np.ascontiguousarray(rows[-1]), frames)
+    free = free_joints(chain, frames, columns) > 0
+    signs = np.sign(np.linalg.det(jacobian(robot, tool, rows)[..., free]))
     return bool(np.all(signs == signs[-1]) and signs[-1] != 0)
 
 
@@ -139,8 +155,9 @@ def _from_all_starts(task: ApproachTask, lower: Array, upper: Array) -> list[_Fo
             upper=upper,
             reference=reference,
         )
-        postures, angles, errors = starts.copy(), nearest.copy(), np.empty(len(starts))
-        from_starts(chain, family, postures, angles, errors)
+        postures, errors = np.empty((2 * len(starts), starts.shape[1])), np.empty(2 * len(starts))
+        angles = np.tile(nearest, 2)
+        from_starts(chain, family, starts.copy(), angles, postures, errors)
         found.append(_Found(side, postures, angles, errors))
     return found
 

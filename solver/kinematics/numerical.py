@@ -14,7 +14,13 @@ import numpy as np
 
 from solver.compiled import kernel
 from solver.robots.model import Array, Robot, Tool
-from solver.tolerances import NUMERICAL_DAMPING, NUMERICAL_POLISH_STEPS, NUMERICAL_POLISHED
+from solver.tolerances import (
+    NUMERICAL_DAMPING,
+    NUMERICAL_FOLLOWED,
+    NUMERICAL_MOST_PIECES,
+    NUMERICAL_POLISH_STEPS,
+    NUMERICAL_POLISHED,
+)
 
 
 class Chain(NamedTuple):
@@ -53,6 +59,9 @@ def chain_of(robot: Robot, tool: Tool) -> Chain:
 
 def postures_behind(robot: Robot, tool: Tool, thinning: Array, retreats: Array) -> Array:
     """Postures straight behind a thinning posture, each from its neighbour by Newton's method.
+
+    Joints beyond six stand still, as a rail does (`free_joints` chooses them from the thinning
+    posture), so that a posture depends on its retreat and not on the rows that lead to it.
 
     Args:
         robot: any arm.
@@ -162,8 +171,29 @@ def solve_damped(columns, damping, error, solution):
 
 
 @kernel
-def polish(chain, position, axes, q):
-    """Newton's method from q, in place, to a pose; returns the error left [m and rad]."""
+def free_joints(chain, frames, columns):
+    """The six joints whose columns span the most, largest first; shape (n,), 1 free and 0 still."""
+    n = columns.shape[1]
+    fill_jacobian(chain, frames, columns)
+    left = columns.copy()
+    free = np.zeros(n)
+    for _ in range(min(n, 6)):
+        best, length = -1, -1.0
+        for i in range(n):
+            square = np.sum(left[:, i] ** 2)
+            if free[i] == 0.0 and square > length:
+                best, length = i, square
+        free[best] = 1.0
+        if length > 0.0:
+            along = left[:, best] / math.sqrt(length)
+            for i in range(n):
+                left[:, i] -= np.sum(along * left[:, i]) * along
+    return free
+
+
+@kernel
+def polish(chain, position, axes, free, q):
+    """Newton's method from q, in place, to a pose, with the free joints; returns the error left."""
     n = len(q)
     frames, columns = np.empty((n + 1, 4, 4)), np.empty((6, n))
     error, solution = np.empty(6), np.empty(6)
@@ -175,6 +205,8 @@ def polish(chain, position, axes, q):
             return size
         before = size
         fill_jacobian(chain, frames, columns)
+        for i in range(n):
+            columns[:, i] *= free[i]
         # The damping goes to nothing with the error, so that the last steps are Newton's own.
         solve_damped(columns, min(NUMERICAL_DAMPING, size * size), error, solution)
         for i in range(n):
@@ -191,11 +223,22 @@ def follow(chain, position, axes, retreats, rows):
     The last row, at the pose itself, is given; each other starts from the row after it. Returns the
     largest error left [m and rad].
     """
+    n = rows.shape[1]
+    frames = np.empty((n + 1, 4, 4))
+    locate(chain, rows[-1], frames)
+    free = free_joints(chain, frames, np.empty((6, n)))
     worst = 0.0
     place = np.empty(3)
     for k in range(len(retreats) - 2, -1, -1):
-        for row in range(3):
-            place[row] = position[row] - retreats[k] * axes[row, 2]
-        rows[k] = rows[k + 1]
-        worst = max(worst, polish(chain, place, axes, rows[k]))
+        # Where the joints turn fast, Newton's method needs a nearer neighbour than the row after.
+        pieces, left = 1, math.inf
+        while left > NUMERICAL_FOLLOWED and pieces <= NUMERICAL_MOST_PIECES:
+            rows[k], left = rows[k + 1], 0.0
+            for piece in range(1, pieces + 1):
+                retreat = retreats[k + 1] + (retreats[k] - retreats[k + 1]) * piece / pieces
+                for row in range(3):
+                    place[row] = position[row] - retreat * axes[row, 2]
+                left = max(left, polish(chain, place, axes, free, rows[k]))
+            pieces *= 4
+        worst = max(worst, left)
     return worst
