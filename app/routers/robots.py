@@ -75,6 +75,7 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
         joints=[_joint(joint) for joint in robot.joints],
         mount_position_m=list(robot.mount_position_m),
         mount_rpy_rad=list(robot.mount_rpy_rad),
+        flange_roll_rad=robot.flange_roll_rad,
         mass_source=robot.mass_source or MISSING,
         tools=[
             ToolAnswer(

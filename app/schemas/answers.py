@@ -178,6 +178,7 @@ class RobotAnswer(BaseModel):
     joints: list[JointAnswer]
     mount_position_m: list[float] = Field(description="of the first joint's frame")
     mount_rpy_rad: list[float] = Field(description="about the base frame's x, then y, then z")
+    flange_roll_rad: float = Field(description="a last turn about the last z axis")
     mass_source: str | MISSING = Field(
         default=MISSING, description="where the masses are from; absent without masses"
     )

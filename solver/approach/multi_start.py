@@ -61,9 +61,10 @@ def step_towards(chain, family, axes, share, q, columns, frames):
     error, solution = np.empty(6), np.empty(6)
     locate(chain, q, frames)
     size = pose_error(frames[n], family.position, axes, error)
-    fill_jacobian(chain, frames, columns[:, :n])
-    columns[:3, n] = 0.0
-    columns[3:, n] = -family.branch
+    fill_jacobian(chain, frames, columns)
+    for row in range(3):
+        columns[row, n] = 0.0
+        columns[3 + row, n] = -family.branch[row]
     lean, step = np.zeros(n + 1), np.zeros(n + 1)
     for i in range(n):
         lean[i] = share * (family.reference[i] - q[i])
@@ -83,12 +84,15 @@ def step_towards(chain, family, axes, share, q, columns, frames):
         for i in range(n):
             past_upper = q[i] >= family.upper[i] and step[i] > 0.0
             if past_upper or (q[i] <= family.lower[i] and step[i] < 0.0):
-                columns[:, i] = 0.0
+                for row in range(6):
+                    columns[row, i] = 0.0
                 lean[i] = 0.0
                 blocked = True
         if not blocked:
             break
-    largest = max(np.abs(step).max(), NUMERICAL_MOST_STEP)
+    largest = NUMERICAL_MOST_STEP
+    for i in range(n + 1):
+        largest = max(largest, abs(step[i]))
     for i in range(n):
         moved = q[i] + step[i] * NUMERICAL_MOST_STEP / largest
         q[i] = min(max(moved, family.lower[i]), family.upper[i])
@@ -148,5 +152,7 @@ def from_starts(chain, family, starts, angles, postures, errors):
                 angle += step_towards(chain, family, axes, share, q, columns, frames)
             if not leaning:
                 row = k if phase == 0 else count + k
-                postures[row], angles[row] = q, angle
+                angles[row] = angle
+                for i in range(n):
+                    postures[row, i] = q[i]
                 errors[row] = arrive(chain, family, angle, postures[row])

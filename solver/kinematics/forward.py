@@ -6,6 +6,7 @@ The verifier judges every answer with these, so they share no code with the comp
 import numpy as np
 
 from solver.robots.model import REVOLUTE, Array, Robot, Tool
+from solver.robots.rigid import transform
 
 
 def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
@@ -25,9 +26,7 @@ def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
     q = np.asarray(q, dtype=np.float64)
     frames = np.empty((*q.shape[:-1], len(robot.joints) + 1, 4, 4))
     frames[..., 0, :, :] = robot.mount
-    last = len(robot.joints) - 1
     for i, joint in enumerate(robot.joints):
-        length = joint.d_m + (tool.length_m if i == last else 0.0)
         angle, slide = (q[..., i], 0.0) if joint.kind == REVOLUTE else (0.0, q[..., i])
         cos, sin = np.cos(angle + joint.offset_rad), np.sin(angle + joint.offset_rad)
         cos_twist, sin_twist = np.cos(joint.alpha_rad), np.sin(joint.alpha_rad)
@@ -44,9 +43,11 @@ def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
             cos_twist,
         )
         link[..., 0, 3], link[..., 1, 3] = joint.a_m * cos, joint.a_m * sin
-        link[..., 2, 3] = length + slide
+        link[..., 2, 3] = joint.d_m + slide
         link[..., 3, 3] = 1.0
         frames[..., i + 1, :, :] = frames[..., i, :, :] @ link
+    flange = transform((0.0, 0.0, tool.length_m), (0.0, 0.0, robot.flange_roll_rad))
+    frames[..., -1, :, :] = frames[..., -1, :, :] @ flange
     return frames
 
 

@@ -29,6 +29,7 @@ class Chain(NamedTuple):
     Attributes:
         turning: 1 for revolute, 0 for prismatic joints.
         mount: the first joint's frame, shape (4, 4) [m].
+        flange: cosine and sine of the flange's roll, and the tool's length, shape (3,).
     """
 
     a: Array
@@ -38,22 +39,24 @@ class Chain(NamedTuple):
     sin_twists: Array
     turning: Array
     mount: Array
+    flange: Array
 
 
 @lru_cache(maxsize=64)
 def chain_of(robot: Robot, tool: Tool) -> Chain:
     """The kernels' parameters of an arm with a tool."""
     twists = np.array([joint.alpha_rad for joint in robot.joints])
-    lengths = np.array([joint.d_m for joint in robot.joints])
-    lengths[-1] += tool.length_m
     return Chain(
         a=np.array([joint.a_m for joint in robot.joints]),
-        d=lengths,
+        d=np.array([joint.d_m for joint in robot.joints]),
         offsets=np.array([joint.offset_rad for joint in robot.joints]),
         cos_twists=np.cos(twists),
         sin_twists=np.sin(twists),
         turning=np.array(robot.turning),
         mount=np.array(robot.mount),
+        flange=np.array(
+            [math.cos(robot.flange_roll_rad), math.sin(robot.flange_roll_rad), tool.length_m]
+        ),
     )
 
 
@@ -85,7 +88,9 @@ def postures_behind(robot: Robot, tool: Tool, thinning: Array, retreats: Array) 
 @kernel
 def locate(chain, q, frames):
     """Writes the frames of all links to frames, shape (n + 1, 4, 4), the mount first."""
-    frames[0] = chain.mount
+    for row in range(4):
+        for column in range(4):
+            frames[0, row, column] = chain.mount[row, column]
     for i in range(len(q)):
         theta = chain.offsets[i] + chain.turning[i] * q[i]
         length = chain.d[i] + (1.0 - chain.turning[i]) * q[i]
@@ -101,6 +106,12 @@ def locate(chain, q, frames):
             frames[i + 1, row, 3] = frames[i, row, 3] + chain.a[i] * along + length * z
             frames[i + 1, 3, row] = 0.0
         frames[i + 1, 3, 3] = 1.0
+    last = len(q)
+    for row in range(3):
+        x, y = frames[last, row, 0], frames[last, row, 1]
+        frames[last, row, 0] = chain.flange[0] * x + chain.flange[1] * y
+        frames[last, row, 1] = chain.flange[0] * y - chain.flange[1] * x
+        frames[last, row, 3] += chain.flange[2] * frames[last, row, 2]
 
 
 @kernel
@@ -180,14 +191,20 @@ def free_joints(chain, frames, columns):
     for _ in range(min(n, 6)):
         best, length = -1, -1.0
         for i in range(n):
-            square = np.sum(left[:, i] ** 2)
+            square = 0.0
+            for row in range(6):
+                square += left[row, i] ** 2
             if free[i] == 0.0 and square > length:
                 best, length = i, square
         free[best] = 1.0
-        if length > 0.0:
-            along = left[:, best] / math.sqrt(length)
-            for i in range(n):
-                left[:, i] -= np.sum(along * left[:, i]) * along
+        for i in range(n):
+            if i == best or length == 0.0:
+                continue
+            share = 0.0
+            for row in range(6):
+                share += left[row, best] * left[row, i] / length
+            for row in range(6):
+                left[row, i] -= share * left[row, best]
     return free
 
 
@@ -205,8 +222,9 @@ def polish(chain, position, axes, free, q):
             return size
         before = size
         fill_jacobian(chain, frames, columns)
-        for i in range(n):
-            columns[:, i] *= free[i]
+        for row in range(6):
+            for i in range(n):
+                columns[row, i] *= free[i]
         # The damping goes to nothing with the error, so that the last steps are Newton's own.
         solve_damped(columns, min(NUMERICAL_DAMPING, size * size), error, solution)
         for i in range(n):
@@ -233,7 +251,9 @@ def follow(chain, position, axes, retreats, rows):
         # Where the joints turn fast, Newton's method needs a nearer neighbour than the row after.
         pieces, left = 1, math.inf
         while left > NUMERICAL_FOLLOWED and pieces <= NUMERICAL_MOST_PIECES:
-            rows[k], left = rows[k + 1], 0.0
+            left = 0.0
+            for i in range(n):
+                rows[k, i] = rows[k + 1, i]
             for piece in range(1, pieces + 1):
                 retreat = retreats[k + 1] + (retreats[k] - retreats[k + 1]) * piece / pieces
                 for row in range(3):

@@ -123,7 +123,9 @@ def wrist_geometry(robot: Robot, tool: Tool) -> WristGeometry:
         sign4=math.copysign(1.0, j4.alpha_rad),
         sign5=math.copysign(1.0, j5.alpha_rad),
         tool_length=j6.d_m + tool.length_m,
-        offsets=np.array([joint.offset_rad for joint in robot.joints]),
+        # The last twist is zero, so the flange's roll is one more offset of the last joint.
+        offsets=np.array([joint.offset_rad for joint in robot.joints])
+        + np.array([0.0, 0.0, 0.0, 0.0, 0.0, robot.flange_roll_rad]),
         middles=(robot.lower + robot.upper) / 2,
     )
 

@@ -19,6 +19,7 @@ from functools import lru_cache
 import casadi as ca
 
 from solver.robots.model import REVOLUTE, Robot
+from solver.robots.rigid import transform
 from solver.tolerances import EXACT_ZERO
 
 
@@ -80,19 +81,20 @@ def build_programme(robot: Robot, norm: str) -> Programme:
 def symbolic_pose(robot: Robot, q: ca.SX, tool_length: ca.SX) -> tuple[ca.SX, ca.SX]:
     """Tool centre point (3) and axes (3, 3) as expressions of q (T equation 1)."""
     place, turn = ca.SX(robot.mount[:3, 3]), ca.SX(robot.mount[:3, :3])
-    last = len(robot.joints) - 1
     for i, joint in enumerate(robot.joints):
         angle, slide = (q[i], 0.0) if joint.kind == REVOLUTE else (ca.SX(0.0), q[i])
         cos, sin = ca.cos(angle + joint.offset_rad), ca.sin(angle + joint.offset_rad)
         cos_twist, sin_twist = _twist(joint.alpha_rad)
-        length = joint.d_m + (tool_length if i == last else 0.0)
-        place = place + turn @ ca.vertcat(joint.a_m * cos, joint.a_m * sin, length + slide)
+        place = place + turn @ ca.vertcat(joint.a_m * cos, joint.a_m * sin, joint.d_m + slide)
         rows = (
             ca.horzcat(cos, -sin * cos_twist, sin * sin_twist),
             ca.horzcat(sin, cos * cos_twist, -cos * sin_twist),
             ca.horzcat(0.0, sin_twist, cos_twist),
         )
         turn = turn @ ca.vertcat(*rows)
+    place = place + turn @ ca.vertcat(0.0, 0.0, tool_length)
+    if robot.flange_roll_rad:
+        turn = turn @ transform((0.0, 0.0, 0.0), (0.0, 0.0, robot.flange_roll_rad))[:3, :3]
     return place, turn
 
 

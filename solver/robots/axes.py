@@ -29,7 +29,7 @@ class Rows:
         mount: the first joint's frame in the base frame, shape (4, 4) [m].
         rows: one a joint; the last leads to the tip's z axis.
         tool_length_m: what is left along that axis to the tip.
-        roll_rad: what is left about it; an arm of this model has none, so it has to be zero.
+        roll_rad: what is left about it: the flange's roll.
     """
 
     mount: Array
@@ -58,7 +58,8 @@ def denavit_hartenberg(axes: Sequence[Array], tip: Array) -> Rows:
         rows.append(_row(before, frame))
         before = frame
     rest = inverse(before) @ tip
-    return Rows(mount, tuple(rows), _clean(rest[2, 3]), _clean(math.atan2(rest[1, 0], rest[0, 0])))
+    roll = _clean_angle(math.atan2(rest[1, 0], rest[0, 0]))
+    return Rows(mount, tuple(rows), _clean(rest[2, 3]), roll)
 
 
 def _first_frame(axis: Array) -> Array:

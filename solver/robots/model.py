@@ -109,6 +109,8 @@ class Robot:
     Attributes:
         mount_position_m: where the first joint's frame stands in the base frame [m].
         mount_rpy_rad: how it is turned: about x, then y, then z of the base frame (as in URDF).
+        flange_roll_rad: a last turn about the last z axis, where the tool's y axis is not that of
+            the last row; the last link's frame is turned with it.
         home_joints: the default start posture [rad or m].
         version: a digest of the model file: a plan made with another model is not this robot's.
         mass_source: where the masses are from, and whether they are estimates.
@@ -124,6 +126,7 @@ class Robot:
     version: str
     mount_position_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     mount_rpy_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    flange_roll_rad: float = 0.0
     mass_source: str = ""
 
     @cached_property
@@ -235,6 +238,7 @@ def parse_robot(document: bytes) -> Robot:
         mount = data.pop("mount_position_m", (0.0, 0.0, 0.0))
         in_degrees = [math.radians(value) for value in data.pop("mount_rpy_deg", (0.0, 0.0, 0.0))]
         turn = data.pop("mount_rpy_rad", in_degrees)
+        roll = data.pop("flange_roll_rad", math.radians(data.pop("flange_roll_deg", 0.0)))
         robot = Robot(
             joints=tuple(_joint(entry) for entry in data.pop("joints")),
             tools=tuple(Tool(**entry) for entry in data.pop("tools")),
@@ -242,6 +246,7 @@ def parse_robot(document: bytes) -> Robot:
             version=hashlib.sha256(document).hexdigest()[:12],
             mount_position_m=_three(mount),
             mount_rpy_rad=_three(turn),
+            flange_roll_rad=float(roll),
             **data,
         )
         check_robot(robot)
@@ -261,13 +266,13 @@ def _joint(entry: Mapping[str, Any]) -> Joint:
         name = f"{key.removesuffix('_deg')}_rad" if in_degrees else key
         number = math.radians(value) if in_degrees else value
         values[by_key.get(name, name)] = number
-    if "link" in values:
-        values["link"] = _link(values["link"], kind)
     required = {field.name for field in fields(Joint) if field.default is MISSING}
     keys = {field: key for key, field in by_key.items()}
     missing = sorted(keys.get(field, field) for field in required - values.keys())
     if missing:
         raise KeyError(f"joint {entry.get('name')}: {', '.join(missing)}")
+    if "link" in values:
+        values["link"] = _link(values["link"], kind)
     return Joint(**values)
 
 
@@ -286,6 +291,9 @@ def check_robot(robot: Robot) -> None:
     count = len(robot.joints)
     if len(robot.home_joints) != count or not count:
         raise InvalidRobot(f"{robot.name}: home_joints needs {count} values, and an arm a joint")
+    placed = (*robot.mount_position_m, *robot.mount_rpy_rad, robot.flange_roll_rad)
+    if not all(math.isfinite(value) for value in placed):
+        raise InvalidRobot(f"{robot.name}: mount or flange has a value that is not finite")
     if len(set(robot.joint_names)) != count:
         raise InvalidRobot(f"{robot.name}: two joints have one name")
     if robot.tool(robot.default_tool) is None:

@@ -41,6 +41,8 @@ def _lines(robot: Robot) -> Iterator[str]:
         yield f"mount_position_m = {_numbers(robot.mount_position_m)}"
     if any(robot.mount_rpy_rad):
         yield f"mount_rpy_rad = {_numbers(robot.mount_rpy_rad)}"
+    if robot.flange_roll_rad:
+        yield f"flange_roll_rad = {_number(robot.flange_roll_rad)}"
     for tool in robot.tools:
         yield from (
             "",

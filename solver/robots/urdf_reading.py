@@ -5,7 +5,7 @@ URDF has no acceleration limits and no home posture; both are said by the caller
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -20,7 +20,7 @@ from solver.robots.axes import Row, Rows, denavit_hartenberg
 from solver.robots.model import PRISMATIC, REVOLUTE, Array, Joint, Link, Robot, Tool, check_robot
 from solver.robots.rigid import inverse, roll_pitch_yaw, transform
 from solver.robots.toml_writing import with_version
-from solver.tolerances import CONVERTED_POSE, CONVERTED_POSTURES, SAME_AXIS, URDF_DIGITS
+from solver.tolerances import CONVERTED_POSE, CONVERTED_POSTURES, URDF_DIGITS
 
 MOVING: Final = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
 
@@ -71,8 +71,7 @@ def robot_from_urdf(
         acceleration_m_s2: limit of every prismatic joint [m/s2].
 
     Raises:
-        InvalidRobot: not a URDF, no such chain, joints that mimic or float, no limits, or a tip
-            that is turned about its z axis against what Denavit-Hartenberg rows can express.
+        InvalidRobot: not a URDF, no such chain, joints that mimic or float, or no limits.
     """
     root = _root(document)
     elements = _elements(root)
@@ -82,15 +81,14 @@ def robot_from_urdf(
         raise InvalidRobot(f"no joint moves between {base!r} and {tip!r}")
     frames, tip_frame = _frames_at_zero(chain)
     rows = denavit_hartenberg(frames, tip_frame)
-    if abs(rows.roll_rad) > SAME_AXIS:
-        raise InvalidRobot(
-            f"the tip {tip!r} has its x axis off the common normal of the last joint's axis and "
-            f"its own z axis; turn it by {math.degrees(-rows.roll_rad):.9g} degrees about its z"
-        )
     bodies = _bodies(root, elements, chain)
+    limits = {REVOLUTE: acceleration_rad_s2, PRISMATIC: acceleration_m_s2}
+    # The last link's frame is turned with the flange.
+    flange = rows.rows[-1].frame @ transform((0.0, 0.0, 0.0), (0.0, 0.0, rows.roll_rad))
+    frames = [*(row.frame for row in rows.rows[:-1]), flange]
     joints = tuple(
-        _joint(entry, row, body, acceleration_rad_s2, acceleration_m_s2)
-        for entry, row, body in zip(moving, rows.rows, bodies, strict=True)
+        _joint(entry, row, limits, None if body is None else _link(body, frame))
+        for entry, row, body, frame in zip(moving, rows.rows, bodies, frames, strict=True)
     )
     robot = _robot(name or root.get("name") or "robot", joints, rows, tip)
     check_robot(robot)
@@ -159,7 +157,7 @@ def _frames_at_zero(chain: list[_Element]) -> tuple[list[Array], Array]:
 
 
 def _joint(
-    entry: _Element, row: Row, body: _Body | None, turning_limit: float, sliding_limit: float
+    entry: _Element, row: Row, accelerations: Mapping[str, float], link: Link | None
 ) -> Joint:
     limit = entry.element.find("limit")
     if limit is None or "velocity" not in limit.attrib:
@@ -180,9 +178,9 @@ def _joint(
         lower=lower,
         upper=upper,
         velocity=_number(limit.attrib["velocity"], entry.name),
-        acceleration=turning_limit if kind == REVOLUTE else sliding_limit,
+        acceleration=accelerations[kind],
         kind=kind,
-        link=None if body is None else _link(body, row.frame),
+        link=link,
     )
 
 
@@ -214,6 +212,7 @@ def _robot(name: str, joints: tuple[Joint, ...], rows: Rows, tip: str) -> Robot:
         version="",
         mount_position_m=(x, y, z),
         mount_rpy_rad=roll_pitch_yaw(rows.mount[:3, :3]),
+        flange_roll_rad=rows.roll_rad,
         mass_source="as in the URDF file" if weighed else "",
     )
 

@@ -39,6 +39,8 @@ def robot_to_urdf(robot: Robot, tool: Tool) -> bytes:
         _moving(root, joint, parent_name, name, origin)
         element = _link(root, name)
         rest = link_transform(joint.a_m, joint.alpha_rad, joint.d_m, joint.offset_rad)
+        if joint is robot.joints[-1]:
+            rest = rest @ transform((0.0, 0.0, 0.0), (0.0, 0.0, robot.flange_roll_rad))
         elbow = np.array([0.0, 0.0, joint.d_m])
         _cylinder(element, np.zeros(3), elbow, radius)
         _cylinder(element, elbow, rest[:3, 3], radius)

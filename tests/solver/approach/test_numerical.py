@@ -5,13 +5,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver import Approach, Options, Problem, Robot, Target, load_robot, solve, verify, verify_plan
-from solver.approach.numerical import NumericalStart, numerical_warm_start
+from solver import (
+    Approach,
+    Options,
+    Problem,
+    Robot,
+    Target,
+    Tool,
+    load_robot,
+    solve,
+    verify,
+    verify_plan,
+)
+from solver.approach.numerical import NumericalStart, numerical_warm_start, same_side
 from solver.approach.task import approach_task
 from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.numerical import chain_of, polish, postures_behind
 from solver.methods.semi_analytic import best_on_arcs
 from solver.registry import METHODS
 from solver.retiming import ChosenApproach, retime
+from solver.robots.model import Array
 from solver.solution import Reason
 from tests.solver.kinematics.arms import seven_joints, ur5
 
@@ -34,7 +47,8 @@ def test_ncos_plans_what_is_known_to_be_reachable(robot: Robot, norm: str) -> No
     assert plan.planned == len(targets)
     assert all(result.accepted for result in verify_plan(plan).values())
     assert all(approach.branch is None for approach in plan.approaches)
-    assert sum(approach.solver.status == "solved" for approach in plan.approaches) >= 9
+    # Where the warm start is the programme's optimum already, or its cut-in breaks, that is said.
+    assert sum(approach.solver.status == "solved" for approach in plan.approaches) >= 4
 
 
 def test_never_dearer_than_its_warm_start_and_the_same_again() -> None:
@@ -64,8 +78,8 @@ def test_never_cheaper_than_the_closed_form_and_seldom_much_dearer() -> None:
         assert isinstance(start, NumericalStart)
         assert start.effort >= best.effort * (1 - 1e-6)
         ratios.append(start.effort / best.effort)
-    assert len(ratios) >= 12
-    assert np.median(ratios) < 1.01
+    assert len(ratios) >= 15
+    assert np.median(ratios) < 1 + 1e-6
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if name != "ncos"])
@@ -121,37 +135,41 @@ def test_a_claimed_branch_is_refused(planned: tuple[Problem, Approach]) -> None:
 
 
 def test_rows_on_another_solution_are_refused(planned: tuple[Problem, Approach]) -> None:
-    """The same poses with the wrist the other way round: each row right, the whole not."""
+    """The same poses, half of them with other joints: each row right, the whole not."""
     problem, approach = planned
     assert approach.path_joints is not None
-    assert approach.thinning_joints is not None
-    robot = problem.robot
+    robot, tool = problem.robot, problem.mounted_tool
     rows = approach.path_joints.copy()
-    pose = forward_kinematics(robot, robot.tools[0], rows[-1])
-    others = [
-        NumericalStart(0.0, 1, q, 0.0)
-        for seed in range(6)
-        for q in [_other_posture(problem, pose, seed)]
-        if q is not None and np.abs(q - rows[-1]).max() > 0.5
-    ]
-    assert others
-    rows[-1] = others[0].thinning_joints
+    other = next(
+        posture
+        for seed in range(20)
+        if (posture := other_posture(robot, tool, rows[-1], seed)) is not None
+    )
+    assert same_side(robot, tool, rows)
+    rows[10:] = postures_behind(robot, tool, other, np.linspace(0.04, 0.0, 20))[10:]
     broken = replace(approach, path_joints=rows, thinning_joints=rows[-1])
     names = {residual.name for residual in verify(problem, broken, problem.start).failures}
     assert "wrist_jump_rad_m" in names
-    assert "path_position_m" not in names
+    assert not names & {"path_position_m", "path_axes_rad"}
 
 
-def _other_posture(problem: Problem, pose, seed: int):  # type: ignore[no-untyped-def]
-    from solver.kinematics.numerical import chain_of, polish
-
-    robot = problem.robot
+def other_posture(robot: Robot, tool: Tool, posture: Array, seed: int) -> Array | None:
+    """Another posture of the same pose, if Newton's method comes to one from the seed's start."""
+    pose = forward_kinematics(robot, tool, posture)
     q = np.random.default_rng(seed).uniform(robot.lower, robot.upper)
-    chain = chain_of(robot, robot.tools[0])
-    left = min(
-        polish(chain, pose[:3, 3].copy(), np.ascontiguousarray(pose[:3, :3]), np.ones(6), q) for _ in range(30)
-    )
-    return q if left < 1e-9 else None
+    place, axes = pose[:3, 3].copy(), np.ascontiguousarray(pose[:3, :3])
+    left = polish(chain_of(robot, tool), place, axes, np.ones(len(q)), q)
+    return q if left < 1e-9 and np.abs(q - posture).max() > 0.5 else None
+
+
+def test_a_row_across_a_singularity_is_seen() -> None:
+    """The UR5's wrist is singular with its fifth joint at zero: det J changes its sign there."""
+    robot = ur5()
+    rows = np.tile(robot.home_joints, (3, 1))
+    rows[:, 4] = 0.02, 0.01, 0.005
+    assert same_side(robot, robot.tools[0], rows)
+    rows[:, 4] = 0.02, -0.01, 0.005
+    assert not same_side(robot, robot.tools[0], rows)
 
 
 def test_a_chosen_approach_is_retimed_without_a_branch(planned: tuple[Problem, Approach]) -> None:

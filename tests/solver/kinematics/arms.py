@@ -16,6 +16,7 @@ def arms() -> list[Robot]:
         name="hanging",
         mount_position_m=(0.3, -0.2, 0.9),
         mount_rpy_rad=(math.pi, 0.4, -0.7),
+        flange_roll_rad=0.6,
     )
     variants = [tabletop, hanging, load_robot("puma560")]
     for signs in itertools.product((1, -1), repeat=4):
@@ -55,4 +56,4 @@ def seven_joints() -> Robot:
         for i, (length, twist, limit) in enumerate(zip(lengths, twists, limits, strict=True))
     )
     home = (0.0, 0.5, 0.0, -1.2, 0.0, 0.9, 0.0)
-    return replace(ur5(), name="seven", joints=joints, home_joints=home)
+    return replace(ur5(), name="seven", joints=joints, home_joints=home, flange_roll_rad=0.4)

@@ -25,7 +25,7 @@ def potential_energy(robot: Robot, q: Array) -> Array:
 
 
 def kinetic_energy(robot: Robot, q: Array, joint: int) -> Array:
-    """For a unit rate of one joint, by differences of frames: m v^2 / 2 + w I w / 2 of every link."""
+    """For a unit rate of one joint, by differences of frames: sum of m v^2 / 2 + w I w / 2."""
     tool = replace(robot.tools[0], length_m=0.0)
     step = np.zeros(len(robot.joints))
     step[joint] = STEP
