@@ -26,14 +26,19 @@ def warm_up() -> None:
 
 
 def home_target(robot: Robot) -> Target:
-    """A target that fits every robot: where its tool is at home, with a branch across the tool."""
+    """A target that fits every robot: where its tool is near home, with a branch across the tool.
+
+    Near, because joints that need not move at all are not what a first request is like.
+    """
     import numpy as np
 
     from solver.kinematics.forward import forward_kinematics
 
     tool = robot.tool(robot.default_tool)
     assert tool is not None, "parse_robot checks it"
-    pose = forward_kinematics(robot, tool, np.array(robot.home_joints))
+    home, middle = np.array(robot.home_joints), (robot.lower + robot.upper) / 2
+    towards = np.where(middle >= home, 1.0, -1.0)
+    pose = forward_kinematics(robot, tool, home + 0.05 * towards * (robot.upper - robot.lower))
     position, across = pose[:3, 3].tolist(), pose[:3, 1].tolist()
     return Target("warm-up", position, across)
 

@@ -47,9 +47,9 @@ def test_out_in_and_planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     ],
 )
 def test_refusals(tmp_path: Path, arguments: tuple[str, ...], message: str) -> None:
-    options = ("-o", str(tmp_path / "out"))
+    options = ["-o", str(tmp_path / "out")]
     if arguments[0] == "import":
-        options += (*BASE_AND_TIP, "--acceleration-rad-s2", "3")
+        options += [*BASE_AND_TIP, "--acceleration-rad-s2", "3"]
     code, output = run("robot", *arguments, *options)
     assert code == 2
     assert message in output

@@ -39,7 +39,7 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
         (Options(method="magic"), "#/options/method"),
         (Options(order="optimal"), "#/options/order"),
         (Options(norm="l3"), "#/options/norm"),
-        (Options(weights="torque"), "#/options/weights"),
+        (Options(weights="heavy"), "#/options/weights"),
         (Options(path_points=1), "#/options/path_points"),
         (Options(standoff_m=math.nan), "#/options/standoff_m"),
         (Options(standoff_m=0.0), "#/options/standoff_m"),

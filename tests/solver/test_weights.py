@@ -31,11 +31,11 @@ def test_weights_scale_with_no_unit_of_mass(tabletop: Robot) -> None:
     joints = []
     for joint in tabletop.joints:
         assert joint.link is not None
-        inertia = tuple(3 * value for value in joint.link.inertia_kg_m2)
+        xx, yy, zz, xy, xz, yz = (3 * value for value in joint.link.inertia_kg_m2)
         link = replace(
             joint.link,
             mass_kg=3 * joint.link.mass_kg,
-            inertia_kg_m2=inertia,
+            inertia_kg_m2=(xx, yy, zz, xy, xz, yz),
             drive_inertia=3 * joint.link.drive_inertia,
         )
         joints.append(replace(joint, link=link))

@@ -60,7 +60,7 @@ def test_never_dearer_than_its_warm_start_and_the_same_again() -> None:
         assert isinstance(start, NumericalStart)
         assert one.effort is not None
         assert one.effort <= start.effort + 1e-12
-        np.testing.assert_array_equal(one.thinning_joints, two.thinning_joints)  # type: ignore[arg-type]
+        np.testing.assert_array_equal(one.thinning_joints, two.thinning_joints)
 
 
 def test_never_cheaper_than_the_closed_form_and_seldom_much_dearer() -> None:
