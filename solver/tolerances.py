@@ -92,7 +92,8 @@ WEIGHT_SEED: Final = 0
 
 NUMERICAL_STARTS: Final = 64
 """Start postures of the numerical inverse for each tool side. Of 200 reachable targets of a UR5, 8
-starts solve 198, 32 solve 199, 64 all; 256 would find 0.4 % less effort in four times the time."""
+starts solve 199, 32 all; from 32 to 64 the mean effort falls by 0.9 %, from there to 256 by 1.8 %,
+in four times the time."""
 
 NUMERICAL_REACH_STEPS: Final = 40
 """Damped steps towards the target from each start; from half the joint range 15 are usual."""
