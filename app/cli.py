@@ -2,11 +2,12 @@
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 
-BAD_REQUEST = 2
+from app.refusals import fail
+from app.robot_commands import robot_commands
 
 cli = typer.Typer(
     name="prunus",
@@ -15,6 +16,7 @@ cli = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+cli.add_typer(robot_commands, name="robot")
 
 
 def main() -> None:
@@ -61,9 +63,9 @@ def serve(
         run_service(settings)
     except ValidationError as error:
         names = ", ".join(f"PRUNUS_{entry['loc'][0]}".upper() for entry in error.errors())
-        _fail(f"settings that make no sense: {names}", code=1)
+        fail(f"settings that make no sense: {names}", code=1)
     except CannotServe as error:
-        _fail(str(error), code=1)
+        fail(str(error), code=1)
 
 
 @cli.command()
@@ -92,18 +94,20 @@ def plan(
 
     from app.errors import structural_faults
     from app.services.planning import plan_request
-    from solver import InvalidProblem
+    from solver import InvalidProblem, InvalidRobot
 
     try:
         answer, body = plan_request(request_file.read_bytes(), degrees=degrees)
         if output is not None:
             output.write_bytes(body + b"\n")
     except OSError as error:
-        _fail(f"{error.filename}: {error.strerror}")
+        fail(f"{error.filename}: {error.strerror}")
     except ValidationError as error:
-        _fail(*(f"{fault.pointer}: {fault.detail}" for fault in structural_faults(error)))
+        fail(*(f"{fault.pointer}: {fault.detail}" for fault in structural_faults(error)))
     except InvalidProblem as error:
-        _fail(*(f"{fault.pointer}: {fault.detail}" for fault in error.faults))
+        fail(*(f"{fault.pointer}: {fault.detail}" for fault in error.faults))
+    except InvalidRobot as error:
+        fail(str(error))
     from app.plan_table import print_plan
 
     print_plan(answer, Console())
@@ -139,7 +143,7 @@ def export_openapi(
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
-        _fail(f"{error.filename}: {error.strerror}")
+        fail(f"{error.filename}: {error.strerror}")
 
 
 @cli.command()
@@ -170,7 +174,7 @@ def worker(
     from app.version import prunus_version
     from hardware.exceptions import HardwareError
     from hardware.worker_program import WorkerOptions, run_worker
-    from solver.exceptions import UnknownRobot
+    from solver.exceptions import SolverError
 
     options = WorkerOptions(
         url=url,
@@ -187,10 +191,10 @@ def worker(
     )
     try:
         run_worker(options, lambda news: typer.echo(news, err=True))
-    except (HardwareError, UnknownRobot) as error:
-        _fail(str(error), code=1)
+    except (HardwareError, SolverError) as error:
+        fail(str(error), code=1)
     except OSError as error:
-        _fail(f"{error.filename}: {error.strerror}", code=1)
+        fail(f"{error.filename}: {error.strerror}", code=1)
 
 
 @cli.command()
@@ -211,14 +215,14 @@ def calibrate(
 
     from hardware.calibrating import calibrate_arm
     from hardware.exceptions import HardwareError
-    from solver.exceptions import UnknownRobot
+    from solver.exceptions import SolverError
 
     try:
         offsets = calibrate_arm(robot, port, baud_rate, joints_deg, output)
-    except (HardwareError, UnknownRobot) as error:
-        _fail(str(error), code=1)
+    except (HardwareError, SolverError) as error:
+        fail(str(error), code=1)
     except OSError as error:
-        _fail(f"{output}: {error.strerror}", code=1)
+        fail(f"{output}: {error.strerror}", code=1)
     for joint, offset in offsets.items():
         typer.echo(f"{joint} {math.degrees(offset):+.3f} deg")
 
@@ -252,7 +256,7 @@ def servo_bus(
     from hardware.exceptions import HardwareError
     from hardware.simulator.faults import FaultRefused
     from hardware.simulator.program import run_servo_bus
-    from solver.exceptions import UnknownRobot
+    from solver.exceptions import SolverError
 
     try:
         run_servo_bus(
@@ -265,11 +269,5 @@ def servo_bus(
             noise_ticks=noise_ticks,
             time_factor=time_factor,
         )
-    except (FaultRefused, HardwareError, UnknownRobot) as error:
-        _fail(str(error))
-
-
-def _fail(*lines: str, code: int = BAD_REQUEST) -> NoReturn:
-    for line in lines:
-        typer.echo(line, err=True)
-    raise typer.Exit(code)
+    except (FaultRefused, HardwareError, SolverError) as error:
+        fail(str(error))

@@ -9,6 +9,8 @@ import uvicorn
 from app.main import create_app
 from app.processes import READY_LINE
 from app.settings import Settings
+from hardware.instances import instance_names, load_instance
+from solver import InvalidRobot
 
 # Requests still being answered at the end get this long.
 GRACE_S = 5
@@ -33,8 +35,14 @@ def run_service(settings: Settings) -> None:
     """Serve until a signal ends it.
 
     Raises:
-        CannotServe: the address is taken or not this machine's, or the start-up failed.
+        CannotServe: the address is taken or not this machine's, a model file is broken, or the
+            start-up failed.
     """
+    try:
+        for name in instance_names():
+            load_instance(name)
+    except (InvalidRobot, OSError) as error:
+        raise CannotServe(f"a robot's model file cannot be used: {error}") from None
     try:
         if not settings.database_url:
             settings.data_dir.mkdir(parents=True, exist_ok=True)

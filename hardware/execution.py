@@ -216,8 +216,8 @@ def _slowed(robot: Robot) -> Robot:
     joints = tuple(
         replace(
             joint,
-            velocity_rad_s=joint.velocity_rad_s * APPROACH_SHARE,
-            acceleration_rad_s2=joint.acceleration_rad_s2 * APPROACH_SHARE,
+            velocity=joint.velocity * APPROACH_SHARE,
+            acceleration=joint.acceleration * APPROACH_SHARE,
         )
         for joint in robot.joints
     )

@@ -1,14 +1,15 @@
 """Robots by the names under which requests and workers know them.
 
-Each model is a robot of the same name; one with an arm file has a simulated twin as well, named
-with "-sim", on which a plan can be watched before the arm moves.
+Each model is a robot of the same name, those in the folder PRUNUS_ROBOTS_DIR too; one with an arm
+file has a simulated twin as well, named with "-sim", on which a plan can be watched before the arm
+moves.
 """
 
 from dataclasses import dataclass, replace
 from typing import Final
 
 from hardware.joints import arm_names
-from solver.exceptions import UnknownRobot
+from solver.exceptions import InvalidRobot, UnknownRobot
 from solver.robots.model import Robot, load_robot, robot_names
 
 SIMULATED_SUFFIX: Final = "-sim"
@@ -35,9 +36,17 @@ class RobotInstance:
 
 
 def instance_names() -> tuple[str, ...]:
-    """Every robot's name, sorted."""
-    twins = (f"{name}{SIMULATED_SUFFIX}" for name in arm_names())
-    return tuple(sorted((*robot_names(), *twins)))
+    """Every robot's name, sorted.
+
+    Raises:
+        InvalidRobot: a model has the name of another's simulated twin.
+    """
+    models = robot_names()
+    twins = [f"{name}{SIMULATED_SUFFIX}" for name in arm_names()]
+    for name in twins:
+        if name in models:
+            raise InvalidRobot(f"{name}: this is the name of a simulated twin")
+    return tuple(sorted((*models, *twins)))
 
 
 def load_instance(name: str) -> RobotInstance:

@@ -80,7 +80,7 @@ def _check_range(chain: ServoChain, joint: Joint, drive: JointDrive, motor: Moto
     highest = chain.value(motor, "ccw_angle_limit")
     if lowest == highest == 0:
         raise WrongSetting(motor.id, "both angle limits are 0: it would turn without end")
-    ends = [float(drive.ticks(joint.lower_rad)), float(drive.ticks(joint.upper_rad))]
+    ends = [float(drive.ticks(joint.lower)), float(drive.ticks(joint.upper))]
     if motor is not drive.motors[0]:
         ends = [drive.mirrored(end) for end in ends]
     if lowest > max(0, min(ends)) or highest < min(motor.servo.highest_position, max(ends)):

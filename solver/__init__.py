@@ -20,7 +20,10 @@ from solver.exceptions import (
 )
 from solver.planner import solve
 from solver.problem import Options, Problem, Target
-from solver.robots.model import Joint, Robot, Tool, load_robot, robot_names
+from solver.robots.model import Joint, Link, Robot, Tool, load_robot, parse_robot, robot_names
+from solver.robots.toml_writing import robot_to_toml
+from solver.robots.urdf_reading import robot_from_urdf
+from solver.robots.urdf_writing import robot_to_urdf
 from solver.solution import (
     Approach,
     Nearest,
@@ -39,6 +42,7 @@ __all__ = [
     "InvalidProblem",
     "InvalidRobot",
     "Joint",
+    "Link",
     "Nearest",
     "Options",
     "Plan",
@@ -57,7 +61,11 @@ __all__ = [
     "UnsupportedKinematics",
     "Verification",
     "load_robot",
+    "parse_robot",
+    "robot_from_urdf",
     "robot_names",
+    "robot_to_toml",
+    "robot_to_urdf",
     "solve",
     "verify",
     "verify_plan",

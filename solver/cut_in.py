@@ -7,10 +7,13 @@ import numpy as np
 
 from solver.approach.feasibility import retreat_from
 from solver.approach.task import ApproachTask
+from solver.kinematics.families import rail_of
 from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.methods.candidate import Candidate
 from solver.robots.model import Array, Robot, Tool
+from solver.robots.rigid import inverse
 from solver.tolerances import (
     DEVIATION_SAMPLES,
     EXCHANGE_DENSITY,
@@ -60,25 +63,36 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
 
 
 def retreat_rows(
-    robot: Robot, tool: Tool, thinning: Sequence[float], branch: int | None, retreats: Array
+    robot: Robot,
+    tool: Tool,
+    thinning: Sequence[float] | Array,
+    branch: int | None,
+    retreats: Array,
 ) -> Array:
     """Postures straight behind a thinning posture, with its orientation, on its branch.
 
     Args:
         robot: the arm.
         tool: its tool.
-        thinning: the posture at the target, shape (joints,) [rad].
-        branch: the inverse kinematics branch.
+        thinning: the posture at the target, shape (joints,) [rad or m].
+        branch: the inverse kinematics branch, on a rail that of the arm, while the rail stands
+            still; None for an arm without a closed form, where each row follows from its neighbour.
         retreats: distances behind the target, descending to 0, shape (rows,) [m].
 
     Returns:
         Shape (rows, joints), without turns between rows; the last row is `thinning` itself.
     """
-    assert branch is not None
+    retreats, posture = np.ascontiguousarray(retreats), np.asarray(thinning, dtype=np.float64)
+    if branch is None:
+        return postures_behind(robot, tool, posture, retreats)
+    if (rail := rail_of(robot, tool)) is not None:
+        arm = rail.arm_at(float(posture[0]))
+        rows = retreat_rows(arm, tool, posture[1:], branch, retreats)
+        return np.column_stack((np.full(len(rows), posture[0]), rows))
     rows = np.empty((len(retreats), len(robot.joints)))
-    rows[-1] = thinning
-    pose = forward_kinematics(robot, tool, rows[-1])
-    retreat_from(wrist_geometry(robot, tool), pose, branch, np.ascontiguousarray(retreats), rows)
+    rows[-1] = posture
+    pose = inverse(robot.mount) @ forward_kinematics(robot, tool, posture)
+    retreat_from(wrist_geometry(robot, tool), pose, branch, retreats, rows)
     return rows
 
 

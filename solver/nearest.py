@@ -53,7 +53,7 @@ def nearest_displacement(task: ApproachTask) -> Nearest | None:
     if not offers:
         return None
     _, negative_side, branch, x = min(offers, key=lambda offer: offer[:3])
-    x_m, y_m, z_m = (float(value) for value in x[:3])
+    x_m, y_m, z_m = (float(value) for value in task.robot.mount[:3, :3] @ x[:3])
     moved = displaced(task, (x_m, y_m, z_m))
     direction = task.frame.direction(float(x[3]))
     angle = math.atan2(direction @ moved.frame.sideways, direction @ moved.frame.outward)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from solver.approach.certificate import certify_task, is_infeasible
 from solver.approach.task import ApproachTask, approach_task
 from solver.cut_in import broken_limit, build_cut_in
+from solver.kinematics.families import has_closed_form
 from solver.methods.candidate import Candidate
 from solver.problem import Problem, Target
 from solver.proposal import propose
@@ -48,8 +49,14 @@ def solve(problem: Problem) -> Plan:
 
 def _as_one(problem: Problem) -> bool:
     """Whether approaches are chosen for the batch and not for each target."""
-    chained = problem.options.order != "independent"
-    return chained and METHODS[problem.options.method].chooses_among_arcs
+    options = problem.options
+    relaxed = options.strike_zone_m > 0 or options.tilt_tolerance_rad > 0
+    return (
+        options.order != "independent"
+        and METHODS[options.method].chooses_among_arcs
+        and has_closed_form(problem.robot, problem.mounted_tool)
+        and not (options.method == "ncos" and relaxed)
+    )
 
 
 def _planned_first(problem: Problem, approaches: Sequence[Approach]) -> tuple[Approach, ...]:

@@ -7,16 +7,18 @@ Lengths in metres, angles in radians, everything in the robot's base frame.
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Any, Final
 
 from solver.exceptions import Fault, InvalidProblem, UnsupportedKinematics
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.robots.model import Robot, Tool
 from solver.tolerances import LARGEST_STD_REACHES, SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
+from solver.weights import torque_weights
 
 ORDERS: Final = ("independent", "given", "optimal")
 NORMS: Final = ("l1", "l2")
-WEIGHTS: Final = ("uniform",)
+WEIGHTS: Final = ("uniform", "torque")
 INCLUDES: Final = ("path", "transfer", "trajectory")
 FULL_ANSWER_TARGETS: Final = 50
 MOST_WEIGHT: Final = 1e6
@@ -84,10 +86,12 @@ class Problem:
         faults: list[Fault] = []
         tool = self._resolve_tool(faults)
         object.__setattr__(self, "targets", tuple(self.targets))
-        start = self.robot.home_rad if self.start_joints is None else self.start_joints
+        start = self.robot.home_joints if self.start_joints is None else self.start_joints
         faults += _start_faults(self.robot, start)
         faults += _option_faults(self.options, len(self.robot.joints))
-        faults += _certify_faults(self.options, self.robot, tool)
+        faults += _certify_faults(self.options)
+        faults += _closed_form_faults(self, tool)
+        faults += _weight_faults(self.options, self.robot)
         faults += _target_faults(self.targets, self.robot.reach_m(tool))
         if faults:
             raise InvalidProblem(tuple(faults))
@@ -120,11 +124,13 @@ class Problem:
         assert self.start_joints is not None
         return tuple(self.start_joints)
 
-    @property
+    @cached_property
     def joint_weights(self) -> tuple[float, ...]:
         """The weight of each joint in the effort, resolved."""
         if self.options.joint_weights is not None:
             return tuple(float(weight) for weight in self.options.joint_weights)
+        if self.options.weights == "torque":
+            return torque_weights(self.robot, self.mounted_tool)
         return (1.0,) * len(self.robot.joints)
 
 
@@ -139,16 +145,23 @@ def _resolved(options: Options, problem: Problem) -> Options:
     return Options(**values)
 
 
+def _weight_faults(options: Options, robot: Robot) -> Iterable[Fault]:
+    wanted = options.weights == "torque" and options.joint_weights is None
+    if wanted and not robot.has_masses:
+        detail = f"the model of {robot.name} has no masses to take torques from"
+        yield Fault(("options", "weights"), detail)
+
+
 def _start_faults(robot: Robot, start: Sequence[float]) -> Iterable[Fault]:
     if problem := _vector_problem(start, len(robot.joints)):
         yield Fault(("start_joints",), problem)
         return
     for i, (joint, value) in enumerate(zip(robot.joints, start, strict=True)):
-        if not joint.lower_rad <= value <= joint.upper_rad:
+        if not joint.lower <= value <= joint.upper:
             yield Fault(
                 ("start_joints", i),
                 f"outside the limits of {joint.name}, "
-                f"{joint.lower_rad:.6g} to {joint.upper_rad:.6g} rad",
+                f"{joint.lower:.6g} to {joint.upper:.6g} {joint.unit}",
             )
 
 
@@ -208,17 +221,39 @@ RANGES: Final[dict[str, tuple[float, float]]] = {
 }
 
 
-def _certify_faults(options: Options, robot: Robot, tool: Tool) -> Iterable[Fault]:
+def _certify_faults(options: Options) -> Iterable[Fault]:
     if not options.certify:
         return
     for name in ("strike_zone_m", "tilt_tolerance_rad"):
         if getattr(options, name) != 0.0:
             detail = f"bounds the task without relaxations only; {name} is not zero"
             yield Fault(("options", "certify"), detail)
+
+
+def _closed_form_faults(problem: "Problem", tool: Tool) -> Iterable[Fault]:
+    """What only an arm with a closed form, and not on a rail, can have."""
+    options = problem.options
+    asked = [
+        ("options", name)
+        for name in ("strike_zone_m", "tilt_tolerance_rad")
+        if getattr(options, name) != 0.0
+    ]
+    uncertain = [
+        ("targets", k, "position_std_m")
+        for k, target in enumerate(problem.targets)
+        if target.position_std_m
+    ]
+    if options.certify:
+        asked.append(("options", "certify"))
+    if options.order == "optimal":
+        asked.append(("options", "order"))
+    if not asked and not uncertain:
+        return
     try:
-        wrist_geometry(robot, tool)
+        wrist_geometry(problem.robot, tool)
     except UnsupportedKinematics as error:
-        yield Fault(("options", "certify"), f"needs the closed form: {error}")
+        for path in (*asked, *uncertain):
+            yield Fault(path, f"this needs the closed form: {error}")
 
 
 def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
@@ -242,10 +277,7 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
     for name, (lowest, highest) in RANGES.items():
         value = getattr(options, name)
         if not lowest <= value <= highest:
-            allowed = f"between {lowest:g} and {highest:g}"
-            if lowest == highest:
-                allowed = f"{type(value)(lowest)}: anything else is not available yet"
-            yield Fault(("options", name), f"must be {allowed}")
+            yield Fault(("options", name), f"must be between {lowest:g} and {highest:g}")
     if options.standoff_m < options.strike_zone_m <= RANGES["strike_zone_m"][1]:
         # Or the target would be between the forks at standby already.
         yield Fault(("options", "strike_zone_m"), "must not be longer than standoff_m")

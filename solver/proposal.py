@@ -30,7 +30,9 @@ def propose(
     start = np.asarray(reference, dtype=np.float64)
     standby, thinning = cut_in.path_joints[0], cut_in.path_joints[-1]
     transfer = Transfer(
-        "joint_line", np.array([start, standby]), float(np.linalg.norm(standby - start))
+        "joint_line",
+        np.array([start, standby]),
+        float(np.linalg.norm((standby - start) * problem.robot.turning)),
     )
     trajectory = _trajectory(problem, start, cut_in)
     used = thinning_placement(problem, target, candidate.tool_side, thinning)

@@ -7,6 +7,7 @@ from typing import Final
 
 from solver.approach.task import ApproachTask
 from solver.methods.analytic import solve_as
+from solver.methods.any_arm import on_any_arm
 from solver.methods.candidate import Candidate
 from solver.methods.fixed_z import solve_fixed_z
 from solver.methods.floating_z import solve_floating_z
@@ -34,10 +35,23 @@ class Method:
 
 
 _ROWS = (
-    Method("fixed_z", "the approach along the world's x axis (T 3.4.1)", solve_fixed_z),
-    Method("floating_z", "evenly spaced approach angles, all branches (T 3.4.2)", solve_floating_z),
-    Method("as", "closed form, middle of the widest feasible arc (S remarks 1, 2)", solve_as),
-    Method("ssas", "closed form and the optimum over every feasible arc (S 3.2)", solve_ssas, True),
+    Method("fixed_z", "the approach along the world's x axis (T 3.4.1)", on_any_arm(solve_fixed_z)),
+    Method(
+        "floating_z",
+        "evenly spaced approach angles, all branches (T 3.4.2)",
+        on_any_arm(solve_floating_z),
+    ),
+    Method(
+        "as",
+        "closed form, middle of the widest feasible arc (S remarks 1, 2)",
+        on_any_arm(solve_as),
+    ),
+    Method(
+        "ssas",
+        "closed form and the optimum over every feasible arc (S 3.2)",
+        on_any_arm(solve_ssas),
+        chooses_among_arcs=True,
+    ),
     Method("ncos", "nonlinear programme in CasADi, warm-started by ssas (S 3.3)", solve_ncos, True),
 )
 

@@ -13,6 +13,7 @@ import numpy as np
 from solver.approach.task import approach_task
 from solver.cut_in import build_cut_in
 from solver.exceptions import RetimingFailed
+from solver.kinematics.families import has_branches
 from solver.methods.candidate import Candidate
 from solver.problem import Problem, Target
 from solver.proposal import propose
@@ -26,12 +27,12 @@ BRANCHES = range(8)
 
 @dataclass(frozen=True)
 class ChosenApproach:
-    """What was chosen for one target, with the two postures that followed from it [rad]."""
+    """What was chosen for one target; an arm without a closed form has no branch [rad or m]."""
 
     target_id: str
     approach_angle_rad: float
     tool_side: int
-    branch: int
+    branch: int | None
     standby_joints: Sequence[float]
     thinning_joints: Sequence[float]
 
@@ -60,7 +61,8 @@ def _retimed(
 ) -> Approach:
     # A joint that can turn further than once stays on the turn that was chosen.
     task = approach_task(problem, target, choice.thinning_joints)
-    known = choice.branch in BRANCHES and choice.tool_side in task.tool_sides
+    branches = BRANCHES if has_branches(problem.robot, problem.mounted_tool) else (None,)
+    known = choice.branch in branches and choice.tool_side in task.tool_sides
     if not known or len(choice.thinning_joints) != len(problem.robot.joints):
         raise RetimingFailed(target.id, "is on no branch or side of this arm and tool")
     if not np.all(np.isfinite(choice.thinning_joints)):

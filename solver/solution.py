@@ -83,7 +83,8 @@ class Transfer:
     Attributes:
         planner: how it was found.
         joints: its corner postures, shape (rows, joints) [rad].
-        length_rad: sum of the Euclidean lengths of its pieces in joint space [rad].
+        length_rad: sum of the Euclidean lengths of its pieces in the space of the revolute joints
+            [rad].
     """
 
     planner: str
@@ -124,7 +125,8 @@ class Approach:
     Attributes:
         approach_angle_rad: angle of the approach direction about the branch, in (-pi, pi].
         tool_side: 1, or -1 when a symmetric tool is turned about its axis by half a turn.
-        branch: number of the inverse kinematics branch, 0 to 7.
+        branch: number of the inverse kinematics branch, 0 to 7, on a rail that of the arm; None for
+            an arm without a closed form.
         path_joints: the cut-in, shape (path_points, joints): standby first, thinning last [rad].
         path_deviation_m: largest distance of the tool centre point from the straight line in the
             motion as executed, between its rows too.

@@ -137,6 +137,68 @@ ENCLOSURE_SINGULAR_WRIST: Final = 1e-9
 """sin(q5) below which nothing is taken for known of q4 and q6: where the closed form sets q4 to
 zero (SINGULAR_WRIST), and ten times as far."""
 
+# --- Arms without a closed form, arms on a rail, weights -----------------------------------------
+RAIL_POSITIONS: Final = 25
+"""Positions of a slide tried with the closed form: 5 cm apart on 1.2 m. Not an optimum in the
+slide; `ncos` starts from the best of them."""
+
+WEIGHT_POSTURES: Final = 4096
+"""Postures over which torques are averaged for the weights: the mean is sure to about 1 %."""
+
+WEIGHT_SEED: Final = 0
+"""Seed of those postures, fixed so that the weights are those of the robot and its tool."""
+
+NUMERICAL_STARTS: Final = 64
+"""Start postures of the numerical inverse for each tool side. Of 200 reachable targets of a UR5, 8
+starts solve 199, 32 all; from 32 to 64 the mean effort falls by 0.9 %, from there to 256 by 1.8 %,
+in four times the time."""
+
+NUMERICAL_REACH_STEPS: Final = 40
+"""Damped steps towards the target from each start; from half the joint range 15 are usual."""
+
+NUMERICAL_PULL_STEPS: Final = 60
+"""Steps that lean towards the reference posture while the tool stays at the target."""
+
+NUMERICAL_PULL_SHARE: Final = 0.3
+"""Share of the way to the reference that such a step leans; smaller ones only take longer."""
+
+NUMERICAL_MOST_STEP: Final = 0.5
+"""Largest joint step [rad or m]: the Jacobian says nothing about what is further away."""
+
+NUMERICAL_DAMPING: Final = 1e-9
+"""Damping left at the target; half the squared error is added on the way there (Sugihara 2011)."""
+
+NUMERICAL_REACHED: Final = 1e-3
+"""Error [m and rad] below which a start has come to the target and is polished."""
+
+NUMERICAL_POLISHED: Final = 1e-12
+"""Error [m and rad] of a polished posture: rounding, six orders below what the verifier allows."""
+
+NUMERICAL_FOLLOWED: Final = 1e-10
+"""Error [m and rad] above which a row of a cut-in was not reached from its neighbour."""
+
+NUMERICAL_MOST_PIECES: Final = 64
+"""Most pieces into which the way from that neighbour is cut, by fours: 2 mm to 30 um. A joint that
+turns too fast for that is beyond JOINT_RATE_RAD_M."""
+
+NUMERICAL_POLISH_STEPS: Final = 12
+"""Newton steps allowed for it; the error is squared in each, so 3 or 4 are usual."""
+
+# --- Axes of other tools' models ----------------------------------------------------------------
+SAME_AXIS: Final = 1e-9
+"""Sine of an angle, or distance [m], below which two axes are parallel, or meet: ten thousand times
+the rounding of a chain of transforms, and far below what anybody builds."""
+
+CONVERTED_POSE: Final = 1e-7
+"""How far a converted arm's pose may be from the original's [m, and per axis]: a hundred times what
+SAME_AXIS lets pass in each joint, a tenth of what the verifier allows."""
+
+CONVERTED_POSTURES: Final = 100
+"""Random postures at which the two are compared."""
+
+URDF_DIGITS: Final = 4
+"""Digits after the point from which an angle counts as a rounded one: 1.5708 is a right angle."""
+
 # --- Nonlinear programme ------------------------------------------------------------------------
 NLP_TOLERANCE: Final = 1e-9
 """Overall error of IPOPT, and equations of our sequential method [m, rad]: below the verifier's by

@@ -11,12 +11,14 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from solver.approach.frame import approach_frame
+from solver.approach.numerical import same_side
 from solver.approach.relaxation import Placement, placement, rotation, shortened
 from solver.approach.robustness import needed_margin, path_displacement_margin
 from solver.cut_in import line_deviation
 from solver.effort import posture_effort
+from solver.kinematics.families import has_branches, rail_of
 from solver.kinematics.forward import forward_kinematics
-from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.kinematics.spherical_wrist import BRANCHES, inverse_kinematics
 from solver.problem import Problem, Target
 from solver.robots.model import Array
 from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, Trajectory, Transfer
@@ -32,6 +34,7 @@ from solver.tolerances import (
 )
 from solver.trajectory.rates import rate_ratios
 
+MAY_BE_ABSENT = ("branch", "lower_bound", "displacement_margin_m")
 SEGMENTS = ("transfer", "cut_in", "dwell", "retreat")
 
 
@@ -123,18 +126,18 @@ def verify_plan(plan: Plan) -> dict[str, Verification]:
 
 @dataclass(frozen=True)
 class _Claim:
-    """The fields of an approach that claims to be planned, all there; the bound may be absent."""
+    """The fields of an approach that claims to be planned; those that may be None may be absent."""
 
     approach_angle_rad: float
     tool_side: int
-    branch: int
+    branch: int | None
     thinning_joints: Array
     standby_joints: Array
     path_joints: Array
     path_deviation_m: float
     effort: float
     margin_rad: float
-    displacement_margin_m: float
+    displacement_margin_m: float | None
     transfer: Transfer
     trajectory: Trajectory
     lower_bound: float | None
@@ -142,7 +145,7 @@ class _Claim:
 
 def _claim(approach: Approach) -> _Claim | None:
     values = {entry.name: getattr(approach, entry.name) for entry in fields(_Claim)}
-    missing = [name for name, value in values.items() if value is None and name != "lower_bound"]
+    missing = any(value is None for name, value in values.items() if name not in MAY_BE_ABSENT)
     return None if missing else _Claim(**values)
 
 
@@ -236,8 +239,24 @@ def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator
     spacing = options.standoff_m / (options.path_points - 1)
     rate = float(np.abs(np.diff(rows, axis=0)).max()) / spacing
     yield Residual("wrist_jump_rad_m", rate, JOINT_RATE_RAD_M)
-    for name, pose, row in (("standby", poses[0], rows[0]), ("thinning", poses[-1], rows[-1])):
-        found = inverse_kinematics(robot, tool, pose[None]).joints[0, claim.branch]
+    yield from _branch_residuals(problem, claim, poses)
+
+
+def _branch_residuals(problem: Problem, claim: _Claim, poses: Array) -> Iterator[Residual]:
+    """The branch claimed, at both ends; of an arm without branches, that its rows hang together."""
+    robot, tool, rows = problem.robot, problem.mounted_tool, np.asarray(claim.path_joints)
+    known = claim.branch is not None and 0 <= claim.branch < BRANCHES
+    if known != has_branches(robot, tool) or (claim.branch is not None and not known):
+        yield Residual("branch_exists", 1.0, 0.0)
+        return
+    if claim.branch is None:
+        yield Residual("branch_continuity", float(not same_side(robot, tool, rows)), 0.0)
+        return
+    rail = rail_of(robot, tool)
+    for name, end in (("standby", 0), ("thinning", -1)):
+        row = rows[end] if rail is None else rows[end, 1:]
+        arm = robot if rail is None else rail.arm_at(float(rows[end, 0]))
+        found = inverse_kinematics(arm, tool, poses[end][None]).joints[0, claim.branch]
         turned = np.abs(np.remainder(found - row + np.pi, 2 * np.pi) - np.pi).max()
         yield Residual(f"{name}_branch_rad", float(turned), SAME_BRANCH_RAD)
 
@@ -260,6 +279,10 @@ def _number_residuals(
 
 
 def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
+    if claim.branch is None or claim.displacement_margin_m is None:
+        # Only an arm without a closed form has neither; `_branch_residuals` checks that it is one.
+        yield Residual("displacement_margin_absent", float(claim.branch is not None), 0.0)
+        return
     margin = path_displacement_margin(
         problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints
     )
@@ -269,10 +292,13 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
 
 
 def cut_in_margin(problem: Problem, path_joints: Array, trajectory: Trajectory) -> float:
-    """Smallest distance of a joint to its limit over the rows and the executed cut-in [rad]."""
+    """Smallest distance of a revolute joint to its limit, in the rows and as executed [rad].
+
+    Prismatic joints have no margin in an angle; `trajectory_limit_excess` covers them.
+    """
     executed = segment_rows(trajectory, "cut_in", "dwell", "retreat")[1]
     rows = np.concatenate((path_joints, executed))
-    return float(np.minimum(rows - problem.robot.lower, problem.robot.upper - rows).min())
+    return float(problem.robot.limit_margin(rows).min())
 
 
 def segment_rows(trajectory: Trajectory, first: str, *others: str) -> tuple[Array, Array]:
@@ -308,7 +334,7 @@ def _motion_residuals(
         np.abs(transfer.joints[0] - reference).max(), np.abs(transfer.joints[-1] - standby).max()
     )
     yield Residual("transfer_corners_rad", float(corners), SAME_POSTURE_RAD)
-    rows = trajectory.joints
+    rows = np.concatenate((trajectory.joints, claim.path_joints))
     outside = float(np.maximum(robot.lower - rows, rows - robot.upper).max())
     yield Residual("trajectory_limit_excess_rad", outside, LIMIT_EXCESS_RAD)
     dwell_times, dwell_rows = segment_rows(trajectory, "dwell")

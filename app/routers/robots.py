@@ -1,5 +1,7 @@
 """Robots and their models."""
 
+from typing import Any
+
 from fastapi import APIRouter, Request, Response
 from pydantic import MISSING
 
@@ -14,6 +16,7 @@ from app.schemas.answers import (
 from app.services.execution_checks import robot_instance
 from app.services.links import LinkService
 from hardware.instances import RobotInstance, instance_names, load_instance
+from solver.robots.model import REVOLUTE, Joint
 
 router = APIRouter(prefix="/v1/robots", tags=["robots"])
 
@@ -69,20 +72,11 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
         model_version=robot.version,
         description=robot.description,
         source=robot.source,
-        joints=[
-            JointAnswer(
-                name=joint.name,
-                a_m=joint.a_m,
-                alpha_rad=joint.alpha_rad,
-                d_m=joint.d_m,
-                offset_rad=joint.offset_rad,
-                lower_rad=joint.lower_rad,
-                upper_rad=joint.upper_rad,
-                velocity_rad_s=joint.velocity_rad_s,
-                acceleration_rad_s2=joint.acceleration_rad_s2,
-            )
-            for joint in robot.joints
-        ],
+        joints=[_joint(joint) for joint in robot.joints],
+        mount_position_m=list(robot.mount_position_m),
+        mount_rpy_rad=list(robot.mount_rpy_rad),
+        flange_roll_rad=robot.flange_roll_rad,
+        mass_source=robot.mass_source or MISSING,
         tools=[
             ToolAnswer(
                 name=tool.name,
@@ -93,6 +87,27 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
             for tool in robot.tools
         ],
         default_tool=robot.default_tool,
-        home_joints=list(robot.home_rad),
+        home_joints=list(robot.home_joints),
         calibration_rad=calibration_rad,
+    )
+
+
+def _joint(joint: Joint) -> JointAnswer:
+    turns = joint.kind == REVOLUTE
+    names = (
+        ("lower_rad", "upper_rad", "velocity_rad_s", "acceleration_rad_s2")
+        if turns
+        else ("lower_m", "upper_m", "velocity_m_s", "acceleration_m_s2")
+    )
+    values = (joint.lower, joint.upper, joint.velocity, joint.acceleration)
+    limits: dict[str, Any] = dict(zip(names, values, strict=True))
+    return JointAnswer(
+        name=joint.name,
+        kind=joint.kind,
+        a_m=joint.a_m,
+        alpha_rad=joint.alpha_rad,
+        d_m=joint.d_m,
+        offset_rad=joint.offset_rad,
+        mass_kg=MISSING if joint.link is None else joint.link.mass_kg,
+        **limits,
     )

@@ -147,17 +147,26 @@ class PlanAnswer(BaseModel):
 
 
 class JointAnswer(BaseModel):
-    """A joint: its link's Denavit-Hartenberg row (classic convention) and its limits."""
+    """A joint: its link's Denavit-Hartenberg row (classic convention) and its limits.
+
+    The limits of a revolute joint are in radians, those of a prismatic joint in metres.
+    """
 
     name: str
+    kind: str = Field(description="revolute or prismatic")
     a_m: float
     alpha_rad: float
     d_m: float
     offset_rad: float
-    lower_rad: float
-    upper_rad: float
-    velocity_rad_s: float
-    acceleration_rad_s2: float
+    lower_rad: float | MISSING = MISSING
+    upper_rad: float | MISSING = MISSING
+    velocity_rad_s: float | MISSING = MISSING
+    acceleration_rad_s2: float | MISSING = MISSING
+    lower_m: float | MISSING = MISSING
+    upper_m: float | MISSING = MISSING
+    velocity_m_s: float | MISSING = MISSING
+    acceleration_m_s2: float | MISSING = MISSING
+    mass_kg: float | MISSING = Field(default=MISSING, description="of the link behind it")
 
 
 class ToolAnswer(BaseModel):
@@ -196,6 +205,12 @@ class RobotAnswer(BaseModel):
     description: str
     source: str
     joints: list[JointAnswer]
+    mount_position_m: list[float] = Field(description="of the first joint's frame")
+    mount_rpy_rad: list[float] = Field(description="about the base frame's x, then y, then z")
+    flange_roll_rad: float = Field(description="a last turn about the last z axis")
+    mass_source: str | MISSING = Field(
+        default=MISSING, description="where the masses are from; absent without masses"
+    )
     tools: list[ToolAnswer]
     default_tool: str
     home_joints: list[float]

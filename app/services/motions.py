@@ -46,7 +46,9 @@ def _problem(request: Mapping[str, Any], plan: Mapping[str, Any]) -> Problem:
 
 
 def _chosen(entry: Mapping[str, Any]) -> ChosenApproach:
-    return ChosenApproach(**{name: entry[name] for name in ChosenApproach.__dataclass_fields__})
+    # An arm without a closed form has no branch, and what is absent is left out of a plan.
+    values: dict[str, Any] = {name: entry.get(name) for name in ChosenApproach.__dataclass_fields__}
+    return ChosenApproach(**values)
 
 
 def _motion(approach: Approach, execution_id: str, index: int) -> TargetMotion:

@@ -41,7 +41,7 @@ def run_servo_bus(
     check_time_factor(time_factor)
     instance = load_instance(robot)
     arm = load_arm(instance.robot, instance.model, calibration)
-    home = instance.robot.home_rad
+    home = instance.robot.home_joints
     start = home if joints_deg is None else joints_from_degrees(joints_deg, count=len(home))
     bus = simulated_arm(arm, start, RobotClock(time_factor).now, seed, noise_ticks)
     for line in faults:

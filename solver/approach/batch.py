@@ -15,6 +15,7 @@ from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Problem
 from solver.robots.model import Array
+from solver.robots.rigid import inverse
 
 NO_BRANCH = -1
 
@@ -58,13 +59,16 @@ def closed_form_optima(
         robot.upper - options.limit_margin_rad,
     )
     branch, outward, sideways = approach_frames(positions, directions)
+    mount = inverse(robot.mount)
+    turn = mount[:3, :3].T
+    placed = positions @ turn + mount[:3, 3]
     sides = (1, -1) if options.symmetric_tool else (1,)
     numbers = np.stack(
         [
             pack(
                 geometry,
                 limits,
-                (positions, side * branch, outward, sideways),
+                (placed, side * branch @ turn, outward @ turn, sideways @ turn),
                 references,
                 np.asarray(problem.joint_weights),
                 options.norm == "l2",

@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.approach.displacement import displacement_margin
 from solver.compiled import kernel
-from solver.tolerances import ARC_PIECES, ARC_SAMPLES, ROBUST_ANGLE_RAD
+from solver.tolerances import ARC_SAMPLES, LEAST_EFFORT_CELLS, ROBUST_ANGLE_RAD
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
@@ -46,7 +46,7 @@ def robust_pieces(task, branch, lower, upper, needed):
         Lower and upper angles, shape (parts, 2), the largest margin met [m] and its angle.
     """
     rows = np.empty((len(task.retreats), 6))
-    n = max(ARC_PIECES, math.ceil((upper - lower) / (2 * math.pi) * ARC_SAMPLES)) + 1
+    n = max(LEAST_EFFORT_CELLS, math.ceil((upper - lower) / (2 * math.pi) * ARC_SAMPLES)) + 1
     angles, values = np.linspace(lower, upper, n), np.empty(n)
     for k in range(n):
         values[k] = margin_less(task, angles[k], branch, needed, rows)

@@ -16,10 +16,12 @@ import numpy as np
 from solver.approach.displacement import displacement_margin, rows_displacement_margin
 from solver.approach.robust_search import robust_pieces
 from solver.approach.task import ApproachTask
+from solver.kinematics.families import rail_of
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Options, Target
 from solver.robots.model import Array, Robot, Tool
+from solver.robots.rigid import inverse
 from solver.tolerances import UNCERTAINTY_DEVIATIONS
 
 if TYPE_CHECKING:
@@ -73,18 +75,20 @@ def path_displacement_margin(
     `limit_margin_rad`, the reach, and the straight wrist, which no branch passes without a jump.
 
     Args:
-        robot: an arm with a spherical wrist.
+        robot: an arm with a spherical wrist, on a rail that stands still or not.
         tool: its tool.
         options: of the problem.
         branch: inverse kinematics branch.
         path_joints: the cut-in, evenly spaced, standby first, shape (rows, 6) [rad].
     """
     rows = np.ascontiguousarray(path_joints, dtype=np.float64)
+    if (rail := rail_of(robot, tool)) is not None:
+        robot, rows = rail.arm_at(float(rows[-1, 0])), np.ascontiguousarray(rows[:, 1:])
     margin, _, _ = rows_displacement_margin(
         wrist_geometry(robot, tool),
         np.asarray(robot.lower + options.limit_margin_rad),
         np.asarray(robot.upper - options.limit_margin_rad),
-        forward_kinematics(robot, tool, rows[-1]),
+        inverse(robot.mount) @ forward_kinematics(robot, tool, rows[-1]),
         np.linspace(options.standoff_m, 0.0, len(rows)),
         branch,
         rows,

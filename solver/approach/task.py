@@ -12,6 +12,7 @@ from solver.approach.packed import PackedTask, jump_cosines, pack
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Options, Problem, Target
 from solver.robots.model import Array, Robot, Tool
+from solver.robots.rigid import inverse
 
 
 @dataclass(frozen=True)
@@ -43,43 +44,46 @@ class ApproachTask:
 
     @cached_property
     def lower(self) -> Array:
-        """Lower limits with the margin asked for taken off, shape (6,) [rad]."""
-        return np.asarray(self.robot.lower + self.options.limit_margin_rad)
+        """Lower limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
+        return np.asarray(self.robot.lower + self.options.limit_margin_rad * self.robot.turning)
 
     @cached_property
     def upper(self) -> Array:
-        """Upper limits with the margin asked for taken off, shape (6,) [rad]."""
-        return np.asarray(self.robot.upper - self.options.limit_margin_rad)
+        """Upper limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
+        return np.asarray(self.robot.upper - self.options.limit_margin_rad * self.robot.turning)
 
     def for_kernels(self, tool_side: int) -> CutInTask:
-        """The task as the kernels take it, with the tool on one side."""
+        """The task as the kernels take it, with the tool on one side, in the mount's frame."""
+        position, y_axis, outward, sideways = self._vectors(tool_side)
         return CutInTask(
             geometry=wrist_geometry(self.robot, self.tool),
             lower=self.lower,
             upper=self.upper,
-            position=np.asarray(self.target.position_m, dtype=np.float64),
-            y_axis=tool_side * self.frame.branch,
-            outward=self.frame.outward,
-            sideways=self.frame.sideways,
+            position=position,
+            y_axis=y_axis,
+            outward=outward,
+            sideways=sideways,
             retreats=np.asarray(self.retreats_m),
             reference=np.asarray(self.reference),
             weights=np.asarray(self.joint_weights),
             squared=self.options.norm == "l2",
         )
 
+    def _vectors(self, tool_side: int) -> tuple[Array, Array, Array, Array]:
+        """Target, y axis, approach directions at 0 and at a quarter turn, in the mount's frame."""
+        mount, frame = inverse(self.robot.mount), self.frame
+        turn = mount[:3, :3]
+        position = turn @ np.asarray(self.target.position_m, dtype=np.float64) + mount[:3, 3]
+        y_axis = turn @ (tool_side * frame.branch)
+        return position, y_axis, turn @ frame.outward, turn @ frame.sideways
+
     def packed(self, tool_side: int) -> PackedTask:
-        """The task as the inner loops take it, with the tool on one side."""
-        frame = self.frame
-        vectors = (
-            np.asarray(self.target.position_m, dtype=np.float64),
-            tool_side * frame.branch,
-            frame.outward,
-            frame.sideways,
-        )
+        """The task as the inner loops take it, with the tool on one side, in the mount's frame."""
+        position, y_axis, outward, sideways = self._vectors(tool_side)
         numbers = pack(
             wrist_geometry(self.robot, self.tool),
             (self.lower, self.upper),
-            (vectors[0][None], vectors[1][None], vectors[2][None], vectors[3][None]),
+            (position[None], y_axis[None], outward[None], sideways[None]),
             np.asarray(self.reference),
             np.asarray(self.joint_weights),
             self.options.norm == "l2",

@@ -5,7 +5,8 @@ The verifier judges every answer with these, so they share no code with the comp
 
 import numpy as np
 
-from solver.robots.model import Array, Robot, Tool
+from solver.robots.model import REVOLUTE, Array, Robot, Tool
+from solver.robots.rigid import transform
 
 
 def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
@@ -14,20 +15,20 @@ def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
     Args:
         robot: the arm.
         tool: its tool; the last frame's origin is the tool centre point.
-        q: joint vectors, shape (..., n) [rad].
+        q: joint vectors, shape (..., n) [rad or m].
 
     Returns:
-        Homogeneous transforms, shape (..., n + 1, 4, 4): the base first, the tool frame last [m].
+        Homogeneous transforms, shape (..., n + 1, 4, 4): the first joint's frame (the base, where
+        the arm is not mounted elsewhere) first, the tool frame last [m].
 
     Source: T equation 1 (classic Denavit-Hartenberg).
     """
     q = np.asarray(q, dtype=np.float64)
     frames = np.empty((*q.shape[:-1], len(robot.joints) + 1, 4, 4))
-    frames[..., 0, :, :] = np.eye(4)
-    last = len(robot.joints) - 1
+    frames[..., 0, :, :] = robot.mount
     for i, joint in enumerate(robot.joints):
-        length = joint.d_m + (tool.length_m if i == last else 0.0)
-        cos, sin = np.cos(q[..., i] + joint.offset_rad), np.sin(q[..., i] + joint.offset_rad)
+        angle, slide = (q[..., i], 0.0) if joint.kind == REVOLUTE else (0.0, q[..., i])
+        cos, sin = np.cos(angle + joint.offset_rad), np.sin(angle + joint.offset_rad)
         cos_twist, sin_twist = np.cos(joint.alpha_rad), np.sin(joint.alpha_rad)
         link = np.zeros((*q.shape[:-1], 4, 4))
         link[..., 0, 0], link[..., 1, 0] = cos, sin
@@ -41,9 +42,12 @@ def link_transforms(robot: Robot, tool: Tool, q: Array) -> Array:
             -cos * sin_twist,
             cos_twist,
         )
-        link[..., 0, 3], link[..., 1, 3], link[..., 2, 3] = joint.a_m * cos, joint.a_m * sin, length
+        link[..., 0, 3], link[..., 1, 3] = joint.a_m * cos, joint.a_m * sin
+        link[..., 2, 3] = joint.d_m + slide
         link[..., 3, 3] = 1.0
         frames[..., i + 1, :, :] = frames[..., i, :, :] @ link
+    flange = transform((0.0, 0.0, tool.length_m), (0.0, 0.0, robot.flange_roll_rad))
+    frames[..., -1, :, :] = frames[..., -1, :, :] @ flange
     return frames
 
 
@@ -56,15 +60,18 @@ def jacobian(robot: Robot, tool: Tool, q: Array) -> Array:
     """Geometric Jacobian of the tool centre point in the base frame.
 
     Args:
-        robot: the arm, all joints revolute.
+        robot: the arm.
         tool: its tool.
-        q: joint vectors, shape (..., n) [rad].
+        q: joint vectors, shape (..., n) [rad or m].
 
     Returns:
-        Shape (..., 6, n): three rows of linear velocity [m/rad], three of angular [rad/rad].
+        Shape (..., 6, n): three rows of linear velocity [m/rad], three of angular [rad/rad]; a
+        prismatic joint's column is its axis [m/m] and zeros.
     """
     frames = link_transforms(robot, tool, q)
     axes = frames[..., :-1, :3, 2]
     arms = frames[..., -1:, :3, 3] - frames[..., :-1, :3, 3]
-    columns = np.concatenate((np.cross(axes, arms), axes), axis=-1)
+    turning = robot.turning[:, None]
+    linear = turning * np.cross(axes, arms) + (1 - turning) * axes
+    columns = np.concatenate((linear, turning * axes), axis=-1)
     return np.asarray(np.swapaxes(columns, -1, -2))

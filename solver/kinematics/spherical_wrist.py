@@ -36,7 +36,8 @@ from numpy.typing import NDArray
 from solver.compiled import inlined, kernel
 from solver.exceptions import UnsupportedKinematics
 from solver.kinematics.arctangent import atan2
-from solver.robots.model import Array, Robot, Tool
+from solver.robots.model import REVOLUTE, Array, Robot, Tool
+from solver.robots.rigid import inverse
 from solver.tolerances import REACH_ROUNDING_M, RIGHT_ANGLE_RAD, SINGULAR_WRIST, TINY_M2
 
 BRANCHES: Final = 8
@@ -93,6 +94,8 @@ def wrist_geometry(robot: Robot, tool: Tool) -> WristGeometry:
     """
     if len(robot.joints) != 6:
         raise UnsupportedKinematics(robot.name, f"{len(robot.joints)} joints instead of six")
+    if any(joint.kind != REVOLUTE for joint in robot.joints):
+        raise UnsupportedKinematics(robot.name, "a joint slides")
     j1, j2, j3, j4, j5, j6 = robot.joints
     zeros = {
         "a4": j4.a_m,
@@ -126,7 +129,11 @@ def wrist_geometry(robot: Robot, tool: Tool) -> WristGeometry:
         sign4=math.copysign(1.0, j4.alpha_rad),
         sign5=math.copysign(1.0, j5.alpha_rad),
         tool_length=j6.d_m + tool.length_m,
-        offsets=tuple(joint.offset_rad for joint in robot.joints),
+        # The last twist is zero, so the flange's roll is one more offset of the last joint.
+        offsets=(
+            *(joint.offset_rad for joint in robot.joints[:-1]),
+            j6.offset_rad + robot.flange_roll_rad,
+        ),
         middles=tuple(float(value) for value in (robot.lower + robot.upper) / 2),
     )
 
@@ -143,7 +150,7 @@ def inverse_kinematics(robot: Robot, tool: Tool, poses: Array) -> InverseSolutio
         UnsupportedKinematics: the arm is not of the family that the module documents.
     """
     geometry = wrist_geometry(robot, tool)
-    poses = np.ascontiguousarray(poses, dtype=np.float64)
+    poses = np.ascontiguousarray(inverse(robot.mount) @ poses, dtype=np.float64)
     joints = np.empty((len(poses), BRANCHES, 6))
     margins = np.empty((len(poses), BRANCHES // 2))
     singular = np.empty((len(poses), BRANCHES), dtype=np.bool_)

@@ -13,8 +13,11 @@ from solver.approach.relaxation import placement
 from solver.approach.task import ApproachTask
 from solver.cut_in import retreat_rows
 from solver.effort import posture_effort
+from solver.kinematics.families import has_closed_form, rail_of
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.candidate import Candidate
+from solver.methods.on_rail import solve_on_rail
+from solver.methods.other_arm import solve_other_arm
 from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, why_none
 from solver.nlp.backends import solve_instance
 from solver.nlp.formulation import build_programme
@@ -43,6 +46,10 @@ def solve_ncos(
         next_thinning: the next target's thinning posture; where given, the travel to it from this
             standby counts too. `Candidate.effort` stays that of this thinning posture.
     """
+    if (rail := rail_of(task.robot, task.tool)) is not None:
+        return solve_on_rail(task, rail)
+    if not has_closed_form(task.robot, task.tool):
+        return solve_other_arm(task)
     coupling = _Coupling(task, next_thinning)
     if task.options.strike_zone_m > 0 or task.options.tilt_tolerance_rad > 0:
         return _solve_with_relaxations(task, coupling)

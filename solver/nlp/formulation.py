@@ -13,7 +13,7 @@ Parameters   p, y, u, v   target, tool y axis, approach direction at 0 and at a 
 Minimise     sum w t  (+ sum w t')      (l1)
              sum w (q_0 - reference)^2  (+ sum w (next - q_1)^2)      (l2)
 Subject to   position(q_k) = p + (strike zone sigma - retreat_k) z      axes(q_k) = [y' x z, y', z]
-             |eta| <= 1, limits of every posture, bounds of phi
+             |eta| <= 1, limits of every posture, bounds of phi; a rail stands still
 
 The swing is the smallest rotation that takes b to the leaning y axis: its rotation vector is normal
 to b. S(g) turns by 2 atan |g| about g = tan(tolerance / 2) (eta_1 u + eta_2 v), a rational
@@ -31,10 +31,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.robots.model import Joint, Robot
+from solver.robots.model import PRISMATIC, REVOLUTE, Joint, Robot
+from solver.robots.rigid import transform
 from solver.tolerances import EXACT_ZERO
-
-POSE_EQUATIONS = 6
 
 
 @dataclass(frozen=True)
@@ -126,6 +125,8 @@ def build_programme(robot: Robot, shape: Shape) -> Programme:
         place, turn = symbolic_pose(robot, posture, tool_length)
         equalities.append(place - (position + (beyond - retreats[k]) * z_axis))
         equalities.append(axes_error(turn, axes))
+    if robot.joints[0].kind == PRISMATIC:
+        equalities += [posture[0] - q[0][0] for posture in q[1:]]
 
     travels = [(0, reference)] + ([(1, following)] if shape.coupled else [])
     kinematic = sum(part.numel() for part in variables)
@@ -149,7 +150,7 @@ def build_programme(robot: Robot, shape: Shape) -> Programme:
         "f": cost,
         "g": ca.vertcat(*equalities, *inequalities),
     }
-    count = POSE_EQUATIONS * postures
+    count = sum(part.numel() for part in equalities)
     return Programme(
         shape,
         n,
@@ -163,33 +164,35 @@ def build_programme(robot: Robot, shape: Shape) -> Programme:
 
 def symbolic_pose(robot: Robot, q: Any, tool_length: Any) -> tuple[Any, Any]:
     """Tool centre point (3) and axes (3, 3) as expressions of q (T equation 1)."""
-    place, turn = ca.SX.zeros(3), ca.SX.eye(3)
-    last = len(robot.joints) - 1
+    place, turn = ca.SX(robot.mount[:3, 3]), ca.SX(robot.mount[:3, :3])
     for i, joint in enumerate(robot.joints):
-        offset, link = symbolic_link(joint, q[i], tool_length if i == last else 0.0)
+        offset, link = symbolic_link(joint, q[i])
         place, turn = place + turn @ offset, turn @ link
+    place = place + turn @ ca.vertcat(0.0, 0.0, tool_length)
+    if robot.flange_roll_rad:
+        turn = turn @ transform((0.0, 0.0, 0.0), (0.0, 0.0, robot.flange_roll_rad))[:3, :3]
     return place, turn
 
 
-def symbolic_link(joint: Joint, value: Any, further: Any) -> tuple[Any, Any]:
+def symbolic_link(joint: Joint, value: Any) -> tuple[Any, Any]:
     """Origin (3) and axes (3, 3) of a joint's frame in the frame before it.
 
     The one place that knows which Denavit-Hartenberg parameter a joint's value adds to.
 
     Args:
         joint: the joint and its link.
-        value: its expression [rad].
-        further: length along the joint's axis beyond the link's own, of the tool [m].
+        value: its expression [rad or m].
     """
-    angle, length = value + joint.offset_rad, joint.d_m + further
-    cos, sin = ca.cos(angle), ca.sin(angle)
+    angle, slide = (value, 0.0) if joint.kind == REVOLUTE else (ca.SX(0.0), value)
+    cos, sin = ca.cos(angle + joint.offset_rad), ca.sin(angle + joint.offset_rad)
     cos_twist, sin_twist = _twist(joint.alpha_rad)
     rows = (
         ca.horzcat(cos, -sin * cos_twist, sin * sin_twist),
         ca.horzcat(sin, cos * cos_twist, -cos * sin_twist),
         ca.horzcat(0.0, sin_twist, cos_twist),
     )
-    return ca.vertcat(joint.a_m * cos, joint.a_m * sin, length), ca.vertcat(*rows)
+    origin = ca.vertcat(joint.a_m * cos, joint.a_m * sin, joint.d_m + slide)
+    return origin, ca.vertcat(*rows)
 
 
 def turned(vector: Any, gibbs: Any) -> Any:

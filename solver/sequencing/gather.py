@@ -21,12 +21,9 @@ def gather(tasks: Sequence[ApproachTask], arcs: Sequence[Sequence[Arc]]) -> Batc
     frames = np.empty((len(sides) * len(tasks), 12))
     for k, task in enumerate(tasks):
         for s, side in enumerate(sides):
-            frame = task.frame
-            frames[len(sides) * k + s] = (
-                *task.target.position_m,
-                *(side * frame.branch),
-                *frame.outward,
-                *frame.sideways,
+            own = task.for_kernels(side)
+            frames[len(sides) * k + s] = np.concatenate(
+                (own.position, own.y_axis, own.outward, own.sideways)
             )
     rows = [
         (len(sides) * k + sides.index(arc.tool_side), arc.branch, arc.lower_rad, arc.upper_rad)

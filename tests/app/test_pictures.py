@@ -6,14 +6,17 @@ from typing import Any
 import numpy as np
 import orjson
 import pytest
+from matplotlib.patches import Rectangle
 from rich.console import Console
 
 from app.demo_request import demo_request
 from app.pictures.arm import draw_arm
 from app.pictures.effort import CHOSEN_COLOUR, draw_effort
+from app.pictures.weights import draw_weights, robots_with_masses
 from app.plan_table import HEADINGS, markdown_table, print_plan
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
 from solver import Problem, solve
+from solver.weights import torque_weights
 
 
 def planned(request: dict[str, Any]) -> tuple[dict[str, Any], Problem]:
@@ -85,3 +88,17 @@ def test_ids_that_look_like_markup_are_printed_as_they_are() -> None:
     console = Console(record=True, width=200, file=io.StringIO())
     print_plan(plan, console)
     assert console.export_text().count("[/x][red]") == 3
+
+
+def test_weights_are_drawn_as_they_are() -> None:
+    robots = robots_with_masses()
+    assert {"puma560", "puma560_rail", "tabletop"} <= {robot.name for robot in robots}
+    figure = draw_weights(robots)
+    figure.canvas.draw()
+    for robot, axes in zip(robots, figure.axes[1::2], strict=True):
+        tool = robot.tool(robot.default_tool)
+        assert tool is not None
+        heights = [bar.get_height() for bar in axes.patches if isinstance(bar, Rectangle)]
+        assert heights == pytest.approx(torque_weights(robot, tool))
+        assert robot.mass_source in axes.get_title()
+        assert [label.get_text() for label in axes.get_xticklabels()] == list(robot.joint_names)

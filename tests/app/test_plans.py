@@ -1,4 +1,5 @@
 import json
+import math
 import sqlite3
 import subprocess
 import sys
@@ -174,3 +175,34 @@ def test_robots(server: Server) -> None:
     assert {tool["name"] for tool in robot["tools"]} == {"laser", "scaffold"}
     assert all(tool["reach_m"] > 0 for tool in robot["tools"])
     assert robot["model_version"]
+
+
+def test_a_rail_is_told_in_metres(server: Server) -> None:
+    robot = server.client.get("/v1/robots/puma560_rail").json()
+    rail, waist = robot["joints"][:2]
+    assert (rail["kind"], waist["kind"]) == ("prismatic", "revolute")
+    assert (rail["lower_m"], rail["upper_m"], rail["velocity_m_s"]) == (-0.6, 0.6, 0.5)
+    assert not [name for name in rail if name.endswith(("_rad_s", "_rad_s2")) or "er_rad" in name]
+    assert not [name for name in waist if name.startswith(("lower_m", "upper_m", "velocity_m"))]
+    assert waist["upper_rad"] == pytest.approx(math.radians(160))
+    assert robot["mount_rpy_rad"] == pytest.approx([-math.pi / 2, 0, 0])
+    assert len(robot["home_joints"]) == 7
+    assert "estimated" in robot["mass_source"]
+    listed = {entry["name"] for entry in server.client.get("/v1/robots").json()["robots"]}
+    assert {"puma560", "puma560_rail", "tabletop", "tabletop-sim"} <= listed
+    assert not {"puma560-sim", "puma560_rail-sim"} & listed
+
+
+def test_a_plan_on_a_rail(server: Server) -> None:
+    body = {
+        "robot": "puma560_rail",
+        "targets": [{"id": "1", "position_m": [0.55, 1.25, 0.9], "branch_direction": [1, 0.3, 0]}],
+        "options": {"method": "floating_z", "samples": 12, "weights": "torque"},
+    }
+    answer = server.client.post("/v1/plans", json=body)
+    assert answer.status_code == 201, answer.text
+    plan = answer.json()
+    (approach,) = plan["approaches"]
+    assert approach["status"] == "planned"
+    assert len(approach["thinning_joints"]) == len(plan["joint_weights"]) == 7
+    assert approach["thinning_joints"][0] > 0.3

@@ -122,7 +122,7 @@ def make_bench(
     arm_map = replace(arm_map, drives=(first, second, *others))
     time = FakeTime()
     clock = RobotClock(monotonic=time.monotonic, sleep=time.sleep)
-    simulated = simulated_arm(arm_map, start or robot.home_rad, time.monotonic, seed)
+    simulated = simulated_arm(arm_map, start or robot.home_joints, time.monotonic, seed)
     bus = InProcessBus(simulated)
     return Bench(robot, arm_map, ServoArm(robot, arm_map, bus, clock), bus, time)
 

@@ -117,7 +117,7 @@ def test_torque_comes_on_where_the_arm_stands_whatever_stale_goal_there_was(
 
 
 def test_torque_stays_off_outside_the_joint_limits() -> None:
-    home = list(make_bench().robot.home_rad)
+    home = list(make_bench().robot.home_joints)
     bench = make_bench((*home[:1], 1.9, *home[2:]))
     bench.arm.check()
     with pytest.raises(OutsideLimits, match="joint_2"):
@@ -127,7 +127,7 @@ def test_torque_stays_off_outside_the_joint_limits() -> None:
 
 def test_a_goal_needs_torque_first(bench: Bench) -> None:
     with pytest.raises(RuntimeError):
-        bench.arm.command(np.array(bench.robot.home_rad), TICK_S)
+        bench.arm.command(np.array(bench.robot.home_joints), TICK_S)
 
 
 def test_a_refused_goal_is_not_sent_and_not_remembered(bench: Bench) -> None:
@@ -230,7 +230,7 @@ def test_a_posture_is_known_once_every_servo_was_read() -> None:
     posture = bench.arm.chain.last_posture()
     assert posture is not None
     joints, read_at = posture
-    assert joints == pytest.approx(bench.robot.home_rad, abs=0.011)
+    assert joints == pytest.approx(bench.robot.home_joints, abs=0.011)
     assert read_at.endswith("Z")
     assert [health.id for health in bench.arm.chain.health()] == [11, 21, 22, 31, 32, 41, 51, 61]
     assert {health.voltage_v for health in bench.arm.chain.health()} == {16.0}

@@ -29,14 +29,14 @@ def resolution(arm: ArmMap) -> np.ndarray:
 def test_offsets_are_what_the_servos_read_too_much(bench: Bench) -> None:
     signs = np.array([drive.sign for drive in bench.map.drives])
     wrong = np.array([0.02, -0.03, 0.05, 0.0, 0.1, -0.1])
-    true = np.array(bench.robot.home_rad) - signs * wrong
+    true = np.array(bench.robot.home_joints) - signs * wrong
     offsets = measure_offsets(bench.arm.chain, true.tolist())
     assert (np.abs(offsets - wrong) < resolution(bench.map)).all()
     assert {packet[4] for packet in bench.bus.sent} == {2}
 
 
 def test_a_calibrated_arm_reads_the_posture_that_was_given(bench: Bench) -> None:
-    true = np.array(bench.robot.home_rad) + 0.07
+    true = np.array(bench.robot.home_joints) + 0.07
     offsets = measure_offsets(bench.arm.chain, true.tolist())
     arm = calibrated(bench.map, calibration_file(bench.map, offsets, "test"))
     # Noise of the measurement and noise of this one read.
@@ -44,7 +44,7 @@ def test_a_calibrated_arm_reads_the_posture_that_was_given(bench: Bench) -> None
 
 
 def test_a_posture_far_from_what_is_read_is_refused(bench: Bench) -> None:
-    true = np.array(bench.robot.home_rad)
+    true = np.array(bench.robot.home_joints)
     true[3] += 0.2
     with pytest.raises(OutsideLimits, match="joint_4"):
         measure_offsets(bench.arm.chain, true.tolist())
@@ -53,7 +53,7 @@ def test_a_posture_far_from_what_is_read_is_refused(bench: Bench) -> None:
 def test_a_pair_that_disagrees_is_refused(bench: Bench) -> None:
     bench.fault("slip 32 30")
     with pytest.raises(PairDisagreement):
-        measure_offsets(bench.arm.chain, bench.robot.home_rad)
+        measure_offsets(bench.arm.chain, bench.robot.home_joints)
 
 
 def calibrate(device: str, output: Path, joints_deg: str) -> "subprocess.CompletedProcess[str]":

@@ -114,7 +114,7 @@ def order_for(bench: Bench, **changes: object) -> Order:
 
 
 def start_run(seed: int = 0, coupling_of_joint_2: str = MIRRORED) -> Run:
-    home = make_bench().robot.home_rad
+    home = make_bench().robot.home_joints
     bench = make_bench(
         tuple(a + b for a, b in zip(home, START_OFFSET, strict=True)),
         seed=seed,

@@ -1,7 +1,9 @@
+from pathlib import Path
+
 import pytest
 
 from hardware.instances import instance_names, load_instance
-from solver.exceptions import UnknownRobot
+from solver.exceptions import InvalidRobot, UnknownRobot
 from solver.robots.model import load_robot, robot_names
 
 
@@ -9,6 +11,20 @@ def test_every_model_is_an_instance_and_an_arm_has_a_simulated_twin() -> None:
     assert set(robot_names()) < set(instance_names())
     assert "tabletop-sim" in instance_names()
     assert list(instance_names()) == sorted(instance_names())
+
+
+def test_a_robot_without_servos_has_no_twin() -> None:
+    assert {"puma560", "puma560_rail"} < set(instance_names())
+    assert not {"puma560-sim", "puma560_rail-sim"} & set(instance_names())
+    assert not load_instance("puma560").simulated
+
+
+def test_no_model_takes_the_name_of_a_twin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A worker for it would believe its servos to be real ones."""
+    (tmp_path / "tabletop-sim.toml").write_text("")
+    monkeypatch.setenv("PRUNUS_ROBOTS_DIR", str(tmp_path))
+    with pytest.raises(InvalidRobot, match="simulated twin"):
+        instance_names()
 
 
 @pytest.mark.parametrize(("name", "simulated"), [("tabletop", False), ("tabletop-sim", True)])

@@ -17,7 +17,7 @@ ROBOT = load_robot("tabletop")
 ARM = load_arm(ROBOT, "tabletop")
 THESIS = resources.files("hardware.calibrations") / "tabletop_thesis.toml"
 every_drive = pytest.mark.parametrize("drive", ARM.drives, ids=lambda each: each.joint)
-inside_limits = st.tuples(*(st.floats(joint.lower_rad, joint.upper_rad) for joint in ROBOT.joints))
+inside_limits = st.tuples(*(st.floats(joint.lower, joint.upper) for joint in ROBOT.joints))
 
 
 def calibration(**changed_deg: float) -> bytes:
@@ -80,7 +80,7 @@ def test_the_partner_on_a_sync_cable_gets_no_goal_but_is_read() -> None:
 
 def test_limits_of_the_model_are_inside_the_servos_range() -> None:
     for joint, drive in zip(ROBOT.joints, ARM.drives, strict=True):
-        ends = sorted((drive.ticks(joint.lower_rad), drive.ticks(joint.upper_rad)))
+        ends = sorted((drive.ticks(joint.lower), drive.ticks(joint.upper)))
         assert 0 <= ends[0] < ends[1] <= drive.servo.highest_position, joint.name
         if joint.name in ("joint_4", "joint_6"):
             assert ends[0] <= 2

@@ -14,7 +14,7 @@ from tests.hardware.parts import make_bench
 BENCH = make_bench()
 ROBOT, ARM = BENCH.robot, BENCH.map
 STEP_S = 0.02
-HOME = np.array(ROBOT.home_rad)
+HOME = np.array(ROBOT.home_joints)
 
 postures = st.tuples(
     *(

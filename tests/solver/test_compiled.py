@@ -11,7 +11,7 @@ from solver import compiled
 ROOT = Path(solver.__file__).parent
 
 # Modules of which kernels use nothing at run time: types, and errors raised outside kernels.
-NOT_COMPILED_IN = {"solver.robots.model", "solver.exceptions"}
+NOT_COMPILED_IN = {"solver.robots.model", "solver.robots.rigid", "solver.exceptions"}
 
 
 def kernel_modules() -> list[Path]:

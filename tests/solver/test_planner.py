@@ -109,7 +109,7 @@ def test_limits_hold_between_rows_too(tabletop: Robot) -> None:
 def test_joint_weights_change_what_is_cheap(tabletop: Robot) -> None:
     waist = solve(data_set_3(tabletop, method="ssas", joint_weights=(100, 1, 1, 1, 1, 1)))
     even = solve(data_set_3(tabletop, method="ssas"))
-    start = np.array(tabletop.home_rad)
+    start = np.array(tabletop.home_joints)
     travel = [abs(np.asarray(p.approaches[0].thinning_joints) - start)[0] for p in (waist, even)]
     assert travel[0] < travel[1]
 

@@ -43,7 +43,7 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
         (Options(method="magic"), "#/options/method"),
         (Options(order="alphabetical"), "#/options/order"),
         (Options(norm="l3"), "#/options/norm"),
-        (Options(weights="torque"), "#/options/weights"),
+        (Options(weights="heavy"), "#/options/weights"),
         (Options(path_points=1), "#/options/path_points"),
         (Options(standoff_m=math.nan), "#/options/standoff_m"),
         (Options(standoff_m=0.0), "#/options/standoff_m"),
@@ -83,7 +83,7 @@ def test_all_faults_are_told_at_once(tabletop: Robot) -> None:
 def test_defaults_are_resolved(tabletop: Robot) -> None:
     problem = Problem(tabletop, [GOOD])
     assert problem.mounted_tool.name == "laser"
-    assert problem.start == tabletop.home_rad
+    assert problem.start == tabletop.home_joints
     assert problem.joint_weights == (1.0,) * 6
     assert problem.options.include == ("path", "transfer", "trajectory")
     many = [Target(str(k), GOOD.position_m, GOOD.branch_direction) for k in range(51)]

@@ -104,4 +104,4 @@ def arm(tabletop: Robot) -> ArmMap:
 
 @pytest.fixture
 def arm_client(arm: ArmMap, tabletop: Robot, clock: HandClock) -> Client:
-    return Client(simulated_arm(arm, tabletop.home_rad, clock, noise_ticks=0))
+    return Client(simulated_arm(arm, tabletop.home_joints, clock, noise_ticks=0))

@@ -36,7 +36,7 @@ def test_stands_where_it_is_put_with_its_ids(
     arm: ArmMap, tabletop: Robot, arm_client: Client
 ) -> None:
     assert tuple(positions(arm_client)) == IDS
-    assert arm.joints(positions(arm_client)) == pytest.approx(tabletop.home_rad, abs=0.003)
+    assert arm.joints(positions(arm_client)) == pytest.approx(tabletop.home_joints, abs=0.003)
     assert [arm_client.ask(each, PING) for each in IDS] == [[Answer(each, 0, b"")] for each in IDS]
 
 
@@ -88,7 +88,7 @@ def test_a_slave_on_a_sync_cable_follows_and_ignores_goals(
     arm: ArmMap, tabletop: Robot, clock: HandClock
 ) -> None:
     cabled = with_coupling(arm, 1, SYNC_CABLE)
-    client = Client(simulated_arm(cabled, tabletop.home_rad, clock, noise_ticks=0))
+    client = Client(simulated_arm(cabled, tabletop.home_joints, clock, noise_ticks=0))
     assert client.read(22, "drive_mode") == 2
     assert client.read(21, "drive_mode") == 0
     sync_goals(client, {21: 3000, 22: 2000}, speed=50)

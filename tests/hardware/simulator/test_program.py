@@ -63,7 +63,7 @@ def test_the_vendors_library_reads_every_servo(start: Start, tabletop: Robot) ->
             state = port.read(servo_id, 36, 8)
             found[servo_id] = int.from_bytes(state[:2], "little")
             assert state[6] == 160
-    assert found == load_arm(tabletop, "tabletop").goals(tabletop.home_rad)
+    assert found == load_arm(tabletop, "tabletop").goals(tabletop.home_joints)
     out, err = finish(process, "unplug\n")
     assert out == ""
     assert len(err.splitlines()) == 1

@@ -113,7 +113,7 @@ def test_every_turn_of_a_joint_is_considered(tabletop: Robot) -> None:
     `ssas` takes the nearest turn at thinning even where the cut-in then leaves the limits, so that
     its effort may lie above the bound by more than rounding.
     """
-    joints = tuple(replace(j, lower_rad=-4.5, upper_rad=4.8) for j in tabletop.joints)
+    joints = tuple(replace(j, lower=-4.5, upper=4.8) for j in tabletop.joints)
     arm = replace(tabletop, joints=joints)
     problem = Problem(arm, random_targets(68, 30))
     starts = np.random.default_rng(68).uniform(arm.lower, arm.upper, (30, 6))

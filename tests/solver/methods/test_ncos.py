@@ -204,7 +204,7 @@ def test_the_next_target_is_looked_ahead_to(tabletop: Robot) -> None:
         for task in tasks(tabletop, 26, 6, **options):
             alone = solve_ncos(task)
             assert isinstance(alone, Candidate)
-            following = np.asarray(task.robot.home_rad) + 0.4
+            following = np.asarray(task.robot.home_joints) + 0.4
             coupled = solve_ncos(task, tuple(following))
             assert isinstance(coupled, Candidate)
             costs = []

@@ -1,0 +1,65 @@
+"""`ncos` on an arm on a rail: the programme moves the slide as well."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from solver.approach.rail import at_rail, rail_effort
+from solver.approach.task import ApproachTask
+from solver.cut_in import retreat_rows
+from solver.kinematics.families import Rail
+from solver.methods.any_arm import over_rail
+from solver.methods.candidate import Candidate
+from solver.methods.semi_analytic import solve_ssas
+from solver.nlp.backends import solve_instance
+from solver.nlp.formulation import build_programme
+from solver.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
+from solver.solution import Reason
+
+
+def solve_on_rail(task: ApproachTask, rail: Rail) -> Candidate | Reason:
+    """The approach with the slide where the programme puts it, or the warm start if that is better.
+
+    The warm start is the best of a grid of slide positions, each solved to its global optimum. From
+    there the programme moves slide, arm and approach angle together; at its slide position the
+    closed form's optimum is taken. Local in the slide, never dearer than the grid.
+    """
+    kept = over_rail(task, rail, solve_ssas)
+    if isinstance(kept, Reason):
+        return kept
+    result = _programme(task, kept)
+    iterations = kept.iterations + result.iterations
+    if not result.success:
+        status = f"warm_start_after_{result.status}"
+        return replace(kept, iterations=iterations, status=status)
+    position = float(np.clip(result.x[0], task.lower[0], task.upper[0]))
+    found = solve_ssas(at_rail(task, rail, position))
+    travel = rail_effort(task, position)
+    if isinstance(found, Reason) or found.effort + travel >= kept.effort:
+        return replace(kept, iterations=iterations, status="solved_warm_start_as_good")
+    return replace(
+        found,
+        thinning_joints=(position, *found.thinning_joints),
+        effort=found.effort + travel,
+        iterations=iterations + found.iterations,
+        status="solved",
+    )
+
+
+def _programme(task: ApproachTask, warm_start: Candidate) -> ProgrammeResult:
+    ends = np.array([task.options.standoff_m, 0.0])
+    rows = retreat_rows(task.robot, task.tool, warm_start.thinning_joints, warm_start.branch, ends)
+    angle = warm_start.approach_angle_rad
+    start = Start(
+        tool_side=warm_start.tool_side,
+        approach_angle_rad=angle,
+        lower_rad=angle - math.pi,
+        upper_rad=angle + math.pi,
+        postures=rows[::-1],
+        retreats_m=ends[::-1],
+        strike_m=0.0,
+        swing_rad=np.zeros(3),
+    )
+    programme = build_programme(task.robot, shape_of(task))
+    return solve_instance(task.robot, make_instance(task, programme, start), task.options)

@@ -1,0 +1,67 @@
+"""`ncos` on an arm without a closed form: the programme from a numerical warm start."""
+
+import math
+
+import numpy as np
+
+from solver.approach.frame import signed_angle
+from solver.approach.numerical import NumericalStart, numerical_warm_start, polished_thinning
+from solver.approach.task import ApproachTask
+from solver.effort import posture_effort
+from solver.kinematics.numerical import postures_behind
+from solver.methods.candidate import Candidate
+from solver.nlp.backends import solve_instance
+from solver.nlp.formulation import build_programme
+from solver.nlp.instance import Start, make_instance, shape_of
+from solver.solution import Reason
+
+
+def solve_other_arm(task: ApproachTask) -> Candidate | Reason:
+    """The programme's approach, or its warm start where the programme fails or is not better.
+
+    The programme's optimum is local: with a numerical inverse nobody knows that all solutions were
+    seen. It is polished by Newton's method and kept only if its whole cut-in holds.
+    """
+    start = numerical_warm_start(task)
+    if isinstance(start, Reason):
+        return start
+    ends = np.array([task.options.standoff_m, 0.0])
+    rows = postures_behind(task.robot, task.tool, start.thinning_joints, ends)
+    angle = start.approach_angle_rad
+    from_here = Start(
+        tool_side=start.tool_side,
+        approach_angle_rad=angle,
+        lower_rad=angle - math.pi,
+        upper_rad=angle + math.pi,
+        postures=rows[::-1],
+        retreats_m=ends[::-1],
+        strike_m=0.0,
+        swing_rad=np.zeros(3),
+    )
+    programme = build_programme(task.robot, shape_of(task))
+    instance = make_instance(task, programme, from_here)
+    result = solve_instance(task.robot, instance, task.options)
+    if not result.success:
+        return _candidate(start, result.iterations, f"warm_start_after_{result.status}")
+    angle = signed_angle(float(result.x[programme.angle]))
+    near = np.clip(result.x[: programme.joints], task.lower, task.upper)
+    polished = polished_thinning(task, angle, start.tool_side, near)
+    if polished is None:
+        return _candidate(start, result.iterations, "warm_start_kept_cut_in_breaks")
+    cost = posture_effort(polished, task.reference, task.joint_weights, task.options.norm)
+    if cost > start.effort:
+        return _candidate(start, result.iterations, "solved_warm_start_as_good")
+    better = NumericalStart(angle, start.tool_side, polished, cost)
+    return _candidate(better, result.iterations, "solved")
+
+
+def _candidate(start: NumericalStart, iterations: int, status: str) -> Candidate:
+    return Candidate(
+        approach_angle_rad=start.approach_angle_rad,
+        tool_side=start.tool_side,
+        branch=None,
+        thinning_joints=tuple(float(value) for value in start.thinning_joints),
+        effort=start.effort,
+        iterations=iterations,
+        status=status,
+    )
