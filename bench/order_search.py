@@ -1,0 +1,168 @@
+"""Reference searches for an order, on the nodes of a ladder graph: exact for few, long for many."""
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.reference import Ladder
+from solver import Problem
+from solver.compiled import kernel
+
+Array = NDArray[np.float64]
+
+HOT, COLD = 0.5, 0.002
+"""Temperatures at the start and at the end, in efforts of a target on average."""
+
+TRIALS = 20_000
+"""Trials between two looks at the clock."""
+
+
+def scaled_nodes(problem: Problem, ladder: Ladder) -> tuple[Array, Array, Array]:
+    """Thinning and standby postures and the start, each joint times its weight."""
+    weights = np.asarray(problem.joint_weights)
+    return ladder.thinning * weights, ladder.standby * weights, np.asarray(problem.start) * weights
+
+
+def exact_order(problem: Problem, ladder: Ladder) -> float:
+    """Least effort over every order and every choice of nodes (Held and Karp, with nodes)."""
+    return float(_held_karp(*scaled_nodes(problem, ladder), ladder.layers))
+
+
+def long_search(problem: Problem, ladder: Ladder, seconds: float, seed: int) -> list[int]:
+    """An order by simulated annealing on the nodes, as good as it gets within a time."""
+    thinning, standby, start = scaled_nodes(problem, ladder)
+    layers = ladder.layers
+    count = len(layers) - 1
+    rng: Any = np.random.default_rng(seed)
+    order = rng.permutation(count)
+    nodes = layers[:-1].copy()
+    cost = _cost(thinning, standby, start, order, nodes)
+    best_cost, best = cost, order.copy()
+    began, hot = time.perf_counter(), HOT * cost / count
+    _anneal(thinning, standby, start, layers, order.copy(), nodes.copy(), 1.0, 1, 0)  # compiles
+    began = time.perf_counter()
+    while (share := (time.perf_counter() - began) / seconds) < 1.0:
+        temperature = hot * (COLD / HOT) ** share
+        chance = int(rng.integers(2**31))
+        cost = _anneal(thinning, standby, start, layers, order, nodes, temperature, TRIALS, chance)
+        if cost < best_cost:
+            best_cost, best = cost, order.copy()
+    return [int(target) for target in best]
+
+
+@kernel
+def _between(a, b):
+    total = 0.0
+    for i in range(6):
+        total += abs(a[i] - b[i])
+    return total
+
+
+@kernel
+def _held_karp(thinning, standby, start, layers):
+    """Least effort of visiting every layer once, by subsets."""
+    count, nodes = len(layers) - 1, len(thinning)
+    values = np.full((1 << count, nodes), np.inf)
+    for subset in range(1, 1 << count):
+        for k in range(count):
+            if not subset >> k & 1:
+                continue
+            rest = subset & ~(1 << k)
+            for j in range(layers[k], layers[k + 1]):
+                if rest == 0:
+                    values[subset, j] = _between(thinning[j], start)
+                    continue
+                least = np.inf
+                for h in range(count):
+                    if rest >> h & 1:
+                        for i in range(layers[h], layers[h + 1]):
+                            cost = values[rest, i] + _between(thinning[j], standby[i])
+                            least = min(least, cost)
+                values[subset, j] = least
+    return values[-1].min()
+
+
+@kernel
+def _edge(thinning, standby, start, nodes, before, after):
+    """Effort from one target's standby, or the start (-1), to another's thinning posture."""
+    if after < 0:
+        return 0.0
+    if before < 0:
+        return _between(thinning[nodes[after]], start)
+    return _between(thinning[nodes[after]], standby[nodes[before]])
+
+
+@kernel
+def _cost(thinning, standby, start, order, nodes):
+    total, before = 0.0, -1
+    for target in order:
+        total += _edge(thinning, standby, start, nodes, before, target)
+        before = target
+    return total
+
+
+@kernel
+def _best_node(thinning, standby, start, layers, nodes, before, target, after):
+    """The node of a target that is cheapest between two others."""
+    least, best = np.inf, nodes[target]
+    for n in range(layers[target], layers[target + 1]):
+        cost = _between(thinning[n], start if before < 0 else standby[nodes[before]])
+        if after >= 0:
+            cost += _between(thinning[nodes[after]], standby[n])
+        if cost < least:
+            least, best = cost, n
+    return best
+
+
+@kernel
+def _anneal(thinning, standby, start, layers, order, nodes, temperature, trials, seed):
+    """Trials at one temperature, in place: a target elsewhere, or a run turned about.
+
+    The moved target, or the ends of the turned run, take the node that suits their new neighbours.
+    Returns the effort.
+    """
+    np.random.seed(seed)
+    n = len(order)
+    tried, tried_nodes = order.copy(), nodes.copy()
+    cost = _cost(thinning, standby, start, order, nodes)
+    for _ in range(trials):
+        a, b = np.random.randint(n), np.random.randint(n)
+        if np.random.random() < 0.5:
+            b = min(max(a + np.random.randint(-10, 11), 0), n - 1)
+        low, high = min(a, b), max(a, b)
+        first, last = max(low - 1, 0), min(high + 1, n - 1)
+        old = 0.0
+        for p in range(first, min(last + 1, n)):
+            old += _edge(thinning, standby, start, nodes, order[p - 1] if p else -1, order[p])
+        turn = high - low < 30 and np.random.random() < 0.3
+        if turn:
+            for p in range(low, high + 1):
+                tried[p] = order[low + high - p]
+        elif a < b:
+            tried[a:b] = order[a + 1 : b + 1]
+            tried[b] = order[a]
+        else:
+            tried[b + 1 : a + 1] = order[b:a]
+            tried[b] = order[a]
+        for p in (low, high, b):
+            before, after = tried[p - 1] if p else -1, tried[p + 1] if p + 1 < n else -1
+            tried_nodes[tried[p]] = _best_node(
+                thinning, standby, start, layers, tried_nodes, before, tried[p], after
+            )
+        new = 0.0
+        for p in range(first, min(last + 1, n)):
+            new += _edge(thinning, standby, start, tried_nodes, tried[p - 1] if p else -1, tried[p])
+        gain = old - new
+        if gain >= 0.0 or np.random.random() < math.exp(gain / temperature):
+            order[low : high + 1] = tried[low : high + 1]
+            for p in (low, high, b):
+                nodes[order[p]] = tried_nodes[order[p]]
+            cost -= gain
+        else:
+            for p in (low, high, b):
+                tried_nodes[tried[p]] = nodes[tried[p]]
+            tried[low : high + 1] = order[low : high + 1]
+    return _cost(thinning, standby, start, order, nodes)
