@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from bench.measure import QUANTILES, Row
-from bench.pictures import PICTURES
+from bench.pictures import PICTURES, number
 from bench.registry import ALL_CORES, SUBJECTS, Subject
 from bench.results import read, rows_of
 
@@ -55,7 +55,7 @@ def _summary(results: Results) -> str:
     reached = sum(bool(row.reached) for _, row in wanted)
     lines = [
         "## What was wanted\n",
-        f"{reached} of {len(wanted)} figures are reached.\n",
+        f"{reached} of {len(wanted)} figures are reached.{_reservations(results)}\n",
         "| what | value | wanted | |",
         "| --- | --- | --- | --- |",
     ]
@@ -63,6 +63,13 @@ def _summary(results: Results) -> str:
         f"| {row.name} | {_value(row)} | {row.wanted} | {_verdict(row)} |" for _, row in wanted
     ]
     return "\n".join([*lines, ""])
+
+
+def _reservations(results: Results) -> str:
+    missing = [f"`{name}`" for name in SUBJECTS if name not in results]
+    quick = [f"`{name}`" for name, document in results.items() if document["quick"]]
+    text = f" Not measured yet: {', '.join(missing)}." if missing else ""
+    return text + (f" From quick runs only: {', '.join(quick)}." if quick else "")
 
 
 def _section(subject: Subject, document: dict[str, Any] | None) -> str:
@@ -95,20 +102,16 @@ def _circumstances(subject: Subject, document: dict[str, Any]) -> str:
 
 
 def _cells(row: Row) -> list[str]:
-    spread = [_number(row.spread[name]) if row.spread else "" for name in QUANTILES]
+    spread = [number(row.spread[name]) if row.spread else "" for name in QUANTILES]
     return [row.name, _value(row), row.wanted, _verdict(row), *spread, str(row.runs), row.note]
 
 
 def _value(row: Row) -> str:
-    return "failed" if row.value is None else f"{_number(row.value)} {row.unit}".strip()
+    return "failed" if row.value is None else f"{number(row.value)} {row.unit}".strip()
 
 
 def _verdict(row: Row) -> str:
     return {True: "yes", False: "**no**", None: ""}[row.reached]
-
-
-def _number(value: float) -> str:
-    return f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}"
 
 
 if __name__ == "__main__":

@@ -46,6 +46,11 @@ class Picture:
     draw: Callable[[Results], Figure | None]
 
 
+def number(value: float) -> str:
+    """A figure for people: three digits, or whole."""
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}"
+
+
 def values_of(results: Results, subject: str) -> dict[str, float]:
     """The figures of a subject by name, without those that failed."""
     if subject not in results:
@@ -68,7 +73,7 @@ def draw_times(results: Results) -> Figure | None:
     figure = Figure(figsize=(9, 1.2 + 0.36 * len(bars)), layout="constrained")
     axes = figure.subplots()
     drawn = axes.barh(labels, heights, color=colours)
-    axes.bar_label(drawn, [f"{value:.3g} ms" for value in heights], padding=4, fontsize=9)
+    axes.bar_label(drawn, [f"{number(value)} ms" for value in heights], padding=4, fontsize=9)
     axes.set_xscale("log")
     axes.set_xlim(min(heights) / 3, max(heights) * 12)
     axes.set_xlabel("time a target [ms], median")

@@ -101,12 +101,12 @@ def build_ladder(problem: Problem, targets: TargetSet, angles: int) -> Ladder:
 
 
 def ladder_effort(problem: Problem, ladder: Ladder) -> float:
-    """Least total effort through the layers, in their order; each needs a node."""
+    """Least total effort through the layers that have nodes, in their order."""
     total, _ = cheapest_chain(
         np.asarray(problem.joint_weights),
         ladder.thinning,
         ladder.standby,
-        ladder.layers,
+        np.unique(ladder.layers),
         np.asarray(problem.start),
     )
     return float(total)

@@ -11,6 +11,7 @@ from app.demo_request import demo_request
 from solver import Options, Problem, Target, load_robot
 from solver.approach.batch import NO_BRANCH, closed_form_optima
 from solver.approach.frame import approach_frames
+from solver.kinematics.forward import forward_kinematics
 
 Array = NDArray[np.float64]
 
@@ -53,6 +54,37 @@ def random_set(seed: int, count: int) -> TargetSet:
     rng = np.random.default_rng(seed)
     positions = rng.uniform(*BOX, (count, 3))
     return TargetSet(positions, rng.normal(size=(count, 3)))
+
+
+def hard_set(seed: int, count: int) -> TargetSet:
+    """Targets at the edges of what the arm can do, all reached by some thinning posture.
+
+    They are where random postures put the tool: a third with a joint beside its limit, a third with
+    a nearly straight wrist, a third with a nearly stretched arm; branches lie along the tool's y.
+    """
+    problem = data_set_3().problem()
+    rng = np.random.default_rng(seed)
+    margin = problem.options.limit_margin_rad
+    lower, upper = problem.robot.lower + margin, problem.robot.upper - margin
+    q = rng.uniform(lower, upper, (count, len(lower)))
+    beside = 10.0 ** rng.uniform(-5, -1, count)
+    k = np.arange(count)
+    joint, kind = rng.integers(len(lower), size=count), k % 3
+    at_limit = np.where(rng.random(count) < 0.5, lower[joint] + beside, upper[joint] - beside)
+    q[k[kind == 0], joint[kind == 0]] = at_limit[kind == 0]
+    signs = rng.choice((-1.0, 1.0), count)
+    q[kind == 1, 4] = (signs * beside)[kind == 1]
+    q[kind == 2, 2] = (signs * beside)[kind == 2]
+    poses = forward_kinematics(problem.robot, problem.mounted_tool, q)
+    return TargetSet(poses[:, :3, 3], poses[:, :3, 1])
+
+
+def together(*sets: TargetSet) -> TargetSet:
+    """Several sets as one."""
+    return TargetSet(
+        np.concatenate([one.positions for one in sets]),
+        np.concatenate([one.directions for one in sets]),
+    )
 
 
 def reachable_set(seed: int, count: int) -> TargetSet:

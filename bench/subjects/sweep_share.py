@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from bench.measure import Row, row
 from bench.reference import sweep_targets
-from bench.targets import random_set
+from bench.targets import hard_set, random_set, together
 from solver import solve
 from solver.approach.batch import NO_BRANCH, closed_form_optima
 
@@ -17,7 +17,8 @@ ANGLES = 65_536
 
 def measure(quick: bool) -> list[Row]:
     """Shares and efforts of 2,000 seeded targets; the sweep uses every core."""
-    targets, angles = random_set(4, 40 if quick else 2000), 1024 if quick else ANGLES
+    easy, hard, angles = (30, 10, 1024) if quick else (1600, 400, ANGLES)
+    targets = together(random_set(4, easy), hard_set(5, hard))
     problem = targets.problem(method="ssas", order="independent", include=("path",))
     sweep_targets(problem, targets[:1], 8)  # compiles
     began = time.perf_counter()
@@ -31,7 +32,10 @@ def measure(quick: bool) -> list[Row]:
     efforts = np.array([approach.effort or np.inf for approach in plan.approaches])
     reached, between = np.isfinite(swept.at_rows), np.isfinite(swept.between_rows)
     have = found.branches != NO_BRANCH
-    where = f"{len(targets)} targets, {angles} angles"
+    where = (
+        f"{easy} targets in a box, {hard} at limits, straight wrists and stretched arms; "
+        f"{angles} angles"
+    )
     excess = found.efforts[reached & have] / swept.at_rows[reached & have] - 1
     plan_excess = efforts[between & planned] / swept.between_rows[between & planned] - 1
     return [
