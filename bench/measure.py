@@ -60,13 +60,14 @@ def row(
     if not isinstance(value, int | float):
         runs, spread = len(value), spread_of(value)
         value = spread.get("median", math.nan)
+    value = float(value)
     known = math.isfinite(value)
     wanted, reached = "", None
     if at_most is not None:
         wanted, reached = f"<= {at_most:g}", known and value <= at_most
     if at_least is not None:
         wanted, reached = f">= {at_least:g}", known and value >= at_least
-    figure = float(value) if known else None
+    figure = value if known else None
     return Row(name, figure, unit, runs or 1, wanted, reached, spread or None, note)
 
 
@@ -76,11 +77,10 @@ def failed(name: str, unit: str, why: str, wanted: str = "") -> Row:
 
 
 def spread_of(values: Sequence[float]) -> dict[str, float]:
-    """Median, quantiles and maximum of finite values, by name; empty for no values."""
-    finite = [value for value in values if math.isfinite(value)]
-    if not finite:
+    """Median, quantiles and maximum, by name; empty for no values or where one is not finite."""
+    if len(values) == 0 or not all(math.isfinite(value) for value in values):
         return {}
-    levels = np.quantile(finite, list(QUANTILES.values()))
+    levels = np.quantile(values, list(QUANTILES.values()))
     return {name: float(level) for name, level in zip(QUANTILES, levels, strict=True)}
 
 

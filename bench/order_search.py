@@ -1,5 +1,6 @@
-"""Reference searches for an order, on the nodes of a ladder graph: exact for few, long for many."""
+"""Reference searches on the nodes of a ladder graph: every order of few targets, long for many."""
 
+import itertools
 import math
 import time
 from typing import Any
@@ -26,9 +27,14 @@ def scaled_nodes(problem: Problem, ladder: Ladder) -> tuple[Array, Array, Array]
     return ladder.thinning * weights, ladder.standby * weights, np.asarray(problem.start) * weights
 
 
-def exact_order(problem: Problem, ladder: Ladder) -> float:
-    """Least effort over every order and every choice of nodes (Held and Karp, with nodes)."""
-    return float(_held_karp(*scaled_nodes(problem, ladder), ladder.layers))
+def efforts_of_orders(problem: Problem, ladder: Ladder) -> tuple[NDArray[np.int64], Array]:
+    """Every order of a few targets, shape (n!, n), and its effort on the nodes, the best first."""
+    count = len(ladder.layers) - 1
+    orders = np.array(list(itertools.permutations(range(count))), dtype=np.int64)
+    efforts = np.empty(len(orders))
+    _efforts_of_orders(*scaled_nodes(problem, ladder), ladder.layers, orders, efforts)
+    ranks = np.argsort(efforts, kind="stable")
+    return orders[ranks], efforts[ranks]
 
 
 def long_search(problem: Problem, ladder: Ladder, seconds: float, seed: int) -> list[int]:
@@ -62,27 +68,22 @@ def _between(a, b):
 
 
 @kernel
-def _held_karp(thinning, standby, start, layers):
-    """Least effort of visiting every layer once, by subsets."""
-    count, nodes = len(layers) - 1, len(thinning)
-    values = np.full((1 << count, nodes), np.inf)
-    for subset in range(1, 1 << count):
-        for k in range(count):
-            if not subset >> k & 1:
-                continue
-            rest = subset & ~(1 << k)
-            for j in range(layers[k], layers[k + 1]):
-                if rest == 0:
-                    values[subset, j] = _between(thinning[j], start)
+def _efforts_of_orders(thinning, standby, start, layers, orders, efforts):
+    """Writes the least effort of every order, by the ladder graph's dynamic programme."""
+    cost, before = np.empty(len(thinning)), -1
+    for n in range(len(orders)):
+        for p in range(orders.shape[1]):
+            target = orders[n, p]
+            for j in range(layers[target], layers[target + 1]):
+                if p == 0:
+                    cost[j] = _between(thinning[j], start)
                     continue
                 least = np.inf
-                for h in range(count):
-                    if rest >> h & 1:
-                        for i in range(layers[h], layers[h + 1]):
-                            cost = values[rest, i] + _between(thinning[j], standby[i])
-                            least = min(least, cost)
-                values[subset, j] = least
-    return values[-1].min()
+                for i in range(layers[before], layers[before + 1]):
+                    least = min(least, cost[i] + _between(thinning[j], standby[i]))
+                cost[j] = least
+            before = target
+        efforts[n] = cost[layers[before] : layers[before + 1]].min()
 
 
 @kernel

@@ -1,5 +1,8 @@
+import dataclasses
+import json
 import math
 
+import numpy as np
 import pytest
 
 from bench.measure import alternating, failed, ratios, row
@@ -13,7 +16,7 @@ def test_the_median_counts_and_is_judged() -> None:
     assert min(line.spread.values()) == line.spread["median"]
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, []])
+@pytest.mark.parametrize("value", [math.nan, math.inf, [], [1.0, math.inf, 1.0]])
 def test_what_has_no_figure_is_not_reached(value: float | list[float]) -> None:
     line = row("x", value, "s", at_most=2.0)
     assert line.value is None
@@ -34,3 +37,7 @@ def test_actions_alternate_after_one_that_is_not_counted() -> None:
     assert calls == ["a", "b"] * 3
     assert [len(values) for values in times.values()] == [2, 2]
     assert ratios([4.0, 6.0], [2.0, 2.0]) == [2.0, 3.0]
+
+
+def test_numbers_of_numpy_can_be_written_as_json() -> None:
+    json.dumps(dataclasses.asdict(row("x", np.float64(2.0), "s", at_most=3.0)))
