@@ -14,11 +14,17 @@ from solver.compiled import kernel
 
 Array = NDArray[np.float64]
 
-HOT, COLD = 0.5, 0.002
+HOT, COLD = 0.1, 0.004
 """Temperatures at the start and at the end, in efforts of a target on average."""
 
 TRIALS = 20_000
 """Trials between two looks at the clock."""
+
+NEAR = 12
+"""Targets behind which a target is tried."""
+
+TURNS, LONGEST_TURN = 0.2, 40
+"""Share of trials that turn a run about, and its longest."""
 
 
 def scaled_nodes(problem: Problem, ladder: Ladder) -> tuple[Array, Array, Array]:
@@ -47,13 +53,16 @@ def long_search(problem: Problem, ladder: Ladder, seconds: float, seed: int) -> 
     nodes = layers[:-1].copy()
     cost = _cost(thinning, standby, start, order, nodes)
     best_cost, best = cost, order.copy()
-    began, hot = time.perf_counter(), HOT * cost / count
-    _anneal(thinning, standby, start, layers, order.copy(), nodes.copy(), 1.0, 1, 0)  # compiles
+    hot = HOT * cost / count
+    near = _near(thinning, standby, layers, min(NEAR, count - 1))
+    _anneal(thinning, standby, start, layers, near, order.copy(), nodes.copy(), 1.0, 1, 0)
     began = time.perf_counter()
     while (share := (time.perf_counter() - began) / seconds) < 1.0:
         temperature = hot * (COLD / HOT) ** share
         chance = int(rng.integers(2**31))
-        cost = _anneal(thinning, standby, start, layers, order, nodes, temperature, TRIALS, chance)
+        cost = _anneal(
+            thinning, standby, start, layers, near, order, nodes, temperature, TRIALS, chance
+        )
         if cost < best_cost:
             best_cost, best = cost, order.copy()
     return [int(target) for target in best]
@@ -119,26 +128,50 @@ def _best_node(thinning, standby, start, layers, nodes, before, target, after):
 
 
 @kernel
-def _anneal(thinning, standby, start, layers, order, nodes, temperature, trials, seed):
-    """Trials at one temperature, in place: a target elsewhere, or a run turned about.
+def _near(thinning, standby, layers, most):
+    """For each target those from which it is reached most cheaply, shape (targets, most)."""
+    count = len(layers) - 1
+    near = np.empty((count, most), dtype=np.int64)
+    for k in range(count):
+        least = np.full(count, np.inf)
+        for h in range(count):
+            if h == k:
+                continue
+            for i in range(layers[h], layers[h + 1]):
+                for j in range(layers[k], layers[k + 1]):
+                    least[h] = min(least[h], _between(thinning[j], standby[i]))
+        near[k] = np.argsort(least)[:most]
+    return near
+
+
+@kernel
+def _window(thinning, standby, start, order, nodes, first, last):
+    """Effort of the edges into the places first to last, as far as there are such places."""
+    total = 0.0
+    for p in range(max(first, 0), min(last + 1, len(order))):
+        before = order[p - 1] if p else -1
+        total += _edge(thinning, standby, start, nodes, before, order[p])
+    return total
+
+
+@kernel
+def _anneal(thinning, standby, start, layers, near, order, nodes, temperature, trials, seed):
+    """Trials at one temperature, in place: a target behind a near one, or a run turned about.
 
     The moved target, or the ends of the turned run, take the node that suits their new neighbours.
     Returns the effort.
     """
     np.random.seed(seed)
     n = len(order)
-    tried, tried_nodes = order.copy(), nodes.copy()
-    cost = _cost(thinning, standby, start, order, nodes)
+    tried, tried_nodes, place = order.copy(), nodes.copy(), np.argsort(order)
     for _ in range(trials):
-        a, b = np.random.randint(n), np.random.randint(n)
-        if np.random.random() < 0.5:
-            b = min(max(a + np.random.randint(-10, 11), 0), n - 1)
+        a = np.random.randint(n)
+        c = place[near[order[a], np.random.randint(near.shape[1])]]
+        b = c if a < c else c + 1
+        if a == b:
+            continue
         low, high = min(a, b), max(a, b)
-        first, last = max(low - 1, 0), min(high + 1, n - 1)
-        old = 0.0
-        for p in range(first, min(last + 1, n)):
-            old += _edge(thinning, standby, start, nodes, order[p - 1] if p else -1, order[p])
-        turn = high - low < 30 and np.random.random() < 0.3
+        turn = high - low < LONGEST_TURN and np.random.random() < TURNS
         if turn:
             for p in range(low, high + 1):
                 tried[p] = order[low + high - p]
@@ -153,15 +186,19 @@ def _anneal(thinning, standby, start, layers, order, nodes, temperature, trials,
             tried_nodes[tried[p]] = _best_node(
                 thinning, standby, start, layers, tried_nodes, before, tried[p], after
             )
-        new = 0.0
-        for p in range(first, min(last + 1, n)):
-            new += _edge(thinning, standby, start, tried_nodes, tried[p - 1] if p else -1, tried[p])
-        gain = old - new
+        # A moved target leaves the edges in the middle as they are, one place further.
+        old_gap, new_gap = (low + 3, low + 2) if a < b else (low + 2, low + 3)
+        length = 0 if turn else max(high - low - 3, 0)
+        gain = _window(thinning, standby, start, order, nodes, low, old_gap - 1)
+        gain += _window(thinning, standby, start, order, nodes, old_gap + length, high + 1)
+        gain -= _window(thinning, standby, start, tried, tried_nodes, low, new_gap - 1)
+        gain -= _window(thinning, standby, start, tried, tried_nodes, new_gap + length, high + 1)
         if gain >= 0.0 or np.random.random() < math.exp(gain / temperature):
-            order[low : high + 1] = tried[low : high + 1]
+            for p in range(low, high + 1):
+                order[p] = tried[p]
+                place[order[p]] = p
             for p in (low, high, b):
                 nodes[order[p]] = tried_nodes[order[p]]
-            cost -= gain
         else:
             for p in (low, high, b):
                 tried_nodes[tried[p]] = nodes[tried[p]]
