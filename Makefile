@@ -3,8 +3,10 @@
 
 VENV := .venv
 BIN := $(VENV)/bin
+BENCH_VENV := .venv-bench
+BENCH_BIN := $(BENCH_VENV)/bin
 
-.PHONY: demo test check serve setup lock pictures openapi clean
+.PHONY: demo test check serve setup lock pictures openapi bench bench-quick bench-page clean
 
 demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
@@ -30,6 +32,16 @@ pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
 openapi: $(VENV)/run.stamp       ## openapi/openapi.json, from the code
 	$(BIN)/prunus export-openapi -o openapi/openapi.json
 
+bench: $(BENCH_VENV)/bench.stamp ## every benchmark into bench/results, or some: make bench ONLY="ssas given"
+	$(BENCH_BIN)/python -m bench $(addprefix --only ,$(ONLY))
+	$(BENCH_BIN)/python -m bench.page
+
+bench-quick: $(BENCH_VENV)/bench.stamp ## the same with small sets, into build/bench
+	$(BENCH_BIN)/python -m bench --quick $(addprefix --only ,$(ONLY))
+
+bench-page: $(BENCH_VENV)/bench.stamp ## docs/benchmarks.md and its plots, from bench/results
+	$(BENCH_BIN)/python -m bench.page
+
 $(VENV)/run.stamp: requirements/run.lock pyproject.toml scripts/setup.sh
 	@sh scripts/setup.sh $(VENV) requirements/run.lock
 	@touch $@
@@ -38,12 +50,17 @@ $(VENV)/dev.stamp: requirements/dev.lock pyproject.toml scripts/setup.sh
 	@sh scripts/setup.sh $(VENV) requirements/dev.lock
 	@touch $@ $(VENV)/run.stamp
 
+$(BENCH_VENV)/bench.stamp: requirements/bench.lock pyproject.toml scripts/setup.sh
+	@sh scripts/setup.sh $(BENCH_VENV) requirements/bench.lock
+	@touch $@
+
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate \
 	--no-emit-index-url --no-emit-find-links --custom-compile-command "make lock"
 
-lock:                            ## both lock files anew (needs uv)
+lock:                            ## all lock files anew (needs uv)
 	$(LOCK) pyproject.toml --group dev -o requirements/dev.lock
 	$(LOCK) pyproject.toml --group install -c requirements/dev.lock -o requirements/run.lock
+	$(LOCK) pyproject.toml --group bench -c requirements/dev.lock -o requirements/bench.lock
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+	rm -rf $(VENV) $(BENCH_VENV) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache

@@ -18,6 +18,9 @@ from app.services import links
 from app.services.execution_record import EXECUTION_ERROR_CODES
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
 from app.settings import Settings
+from bench.page import PAGE, PICTURE_FOLDER, page
+from bench.pictures import PICTURES
+from bench.results import read
 from hardware import exceptions
 from solver import Options, solve
 from solver.problem import RANGES
@@ -158,3 +161,12 @@ def test_table_of_the_readme_is_what_the_demo_computes() -> None:
 def test_demo_request_is_the_example() -> None:
     example = json.loads((ROOT / "openapi/examples/data_set_3.json").read_text())
     assert example == demo_request()
+
+
+def test_page_of_the_benchmarks_is_that_of_the_results() -> None:
+    results = read()
+    assert results
+    text = page(results)
+    assert PAGE.read_text(encoding="utf-8") == text
+    shown = {picture.file for picture in PICTURES if picture.file in text}
+    assert shown == {file.name for file in PICTURE_FOLDER.glob("bench_*.png")}

@@ -1,0 +1,52 @@
+"""The subjects, a row each."""
+
+import importlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+from bench.measure import Row
+
+ONE_CORE: Final = 1
+ALL_CORES: Final = 0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """One subject.
+
+    Attributes:
+        name: on the command line, of its file in `bench/subjects` and of its results.
+        title: for people.
+        cores: how many it may use; ALL_CORES or a number.
+    """
+
+    name: str
+    title: str
+    cores: int = ONE_CORE
+
+    @property
+    def measure(self) -> Callable[[bool], list[Row]]:
+        """Takes whether it has to be quick; gives the lines of the report."""
+        module = importlib.import_module(f"bench.subjects.{self.name}")
+        measure: Callable[[bool], list[Row]] = module.measure
+        return measure
+
+
+_ALL = (
+    Subject("closed_form", "Closed form"),
+    Subject("ssas", "`ssas` with its cut-ins, against sweeps by others"),
+    Subject("sweep_share", "Against a sweep of 65,536 angles", ALL_CORES),
+    Subject("ncos", "`ncos` without relaxations"),
+    Subject("relaxed", "`ncos` with a strike zone and a tilt"),
+    Subject("cold_starts", "What the warm start is worth"),
+    Subject("given", "Order `given`, against ladder graphs"),
+    Subject("optimal", "Order `optimal`, against longer searches"),
+    Subject("savings", "Effort saved"),
+    Subject("large_batch", "100,000 targets"),
+    Subject("second_process", "Start of a second process"),
+    Subject("thesis", "Beside the thesis: data set 3"),
+)
+
+SUBJECTS: Final[Mapping[str, Subject]] = MappingProxyType({one.name: one for one in _ALL})

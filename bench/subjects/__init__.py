@@ -1,0 +1,1 @@
+"""The subjects: a file and a row of `bench.registry` each, `measure(quick) -> list[Row]`."""

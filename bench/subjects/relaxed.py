@@ -1,0 +1,39 @@
+"""`ncos` with a strike zone and a tilt, on targets that `ssas` refuses."""
+
+import math
+
+import numpy as np
+
+from bench.measure import Row, row
+from bench.subjects.ncos import plan_each
+from bench.targets import feasible, random_set
+
+STRIKE = {"strike_zone_m": 0.02}
+TILT = {"tilt_tolerance_rad": math.radians(10.0)}
+CASES = (
+    ("sqp", "2 cm strike zone and 10° tilt", STRIKE | TILT),
+    ("ipopt", "2 cm strike zone and 10° tilt", STRIKE | TILT),
+    ("sqp", "2 cm strike zone", STRIKE),
+    ("sqp", "10° tilt", TILT),
+)
+
+
+def measure(quick: bool) -> list[Row]:
+    """Which share of refused targets is planned with the relaxations, and how long that takes."""
+    drawn = random_set(7, 8 if quick else 300)
+    refused = drawn[~feasible(drawn)]
+    rows = []
+    for backend, name, options in CASES:
+        approaches, times = plan_each(refused, method="ncos", nlp_backend=backend, **options)
+        planned = np.array([approach.status == "planned" for approach in approaches])
+        rows += [
+            row(
+                f"rescued by {backend}, {name}",
+                100 * float(planned.mean()),
+                "%",
+                runs=len(refused),
+                note=f"{planned.sum()} of all targets in a box that ssas refuses",
+            ),
+            row(f"{backend}, {name}", times, "ms a target"),
+        ]
+    return rows

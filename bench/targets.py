@@ -1,0 +1,113 @@
+"""Seeded targets, and the thesis's data set 3, as problems and as arrays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.demo_request import demo_request
+from solver import Options, Problem, Target, load_robot
+from solver.approach.batch import NO_BRANCH, closed_form_optima
+from solver.approach.frame import approach_frames
+from solver.kinematics.forward import forward_kinematics
+
+Array = NDArray[np.float64]
+
+BOX = (0.05, -0.3, 0.05), (0.38, 0.3, 0.5)
+"""Corners of the box in front of the arm from which positions are drawn [m]."""
+
+
+@dataclass(frozen=True)
+class TargetSet:
+    """Positions and branch directions of n targets, shape (n, 3) each [m, any length]."""
+
+    positions: Array
+    directions: Array
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def __getitem__(self, chosen: Any) -> "TargetSet":
+        return TargetSet(self.positions[chosen], self.directions[chosen])
+
+    def problem(self, **options: Any) -> Problem:
+        """A problem of the table-top arm; targets are named by their index, options by keyword."""
+        rows = zip(self.positions.tolist(), self.directions.tolist(), strict=True)
+        targets = [Target(str(k), tuple(p), tuple(d)) for k, (p, d) in enumerate(rows)]
+        return Problem(
+            load_robot("tabletop"),
+            targets,
+            options=Options(**options),
+        )
+
+    @property
+    def frames(self) -> Array:
+        """Position, y axis, approach directions at angle 0 and a quarter turn, shape (n, 12)."""
+        branch, outward, sideways = approach_frames(self.positions, self.directions)
+        return np.concatenate((self.positions, branch, outward, sideways), axis=1)
+
+
+def random_set(seed: int, count: int) -> TargetSet:
+    """Targets anywhere in the box, branches in every direction; half have no approach."""
+    rng = np.random.default_rng(seed)
+    positions = rng.uniform(*BOX, (count, 3))
+    return TargetSet(positions, rng.normal(size=(count, 3)))
+
+
+def hard_set(seed: int, count: int) -> TargetSet:
+    """Targets at the edges of what the arm can do, all reached by some thinning posture.
+
+    They are where random postures put the tool: a third with a joint beside its limit, a third with
+    a nearly straight wrist, a third with a nearly stretched arm; branches lie along the tool's y.
+    """
+    problem = data_set_3().problem()
+    rng = np.random.default_rng(seed)
+    margin = problem.options.limit_margin_rad
+    lower, upper = problem.robot.lower + margin, problem.robot.upper - margin
+    q = rng.uniform(lower, upper, (count, len(lower)))
+    beside = 10.0 ** rng.uniform(-5, -1, count)
+    k = np.arange(count)
+    joint, kind = rng.integers(len(lower), size=count), k % 3
+    at_limit = np.where(rng.random(count) < 0.5, lower[joint] + beside, upper[joint] - beside)
+    q[k[kind == 0], joint[kind == 0]] = at_limit[kind == 0]
+    signs = rng.choice((-1.0, 1.0), count)
+    q[kind == 1, 4] = (signs * beside)[kind == 1]
+    q[kind == 2, 2] = (signs * beside)[kind == 2]
+    poses = forward_kinematics(problem.robot, problem.mounted_tool, q)
+    return TargetSet(poses[:, :3, 3], poses[:, :3, 1])
+
+
+def together(*sets: TargetSet) -> TargetSet:
+    """Several sets as one."""
+    return TargetSet(
+        np.concatenate([one.positions for one in sets]),
+        np.concatenate([one.directions for one in sets]),
+    )
+
+
+def reachable_set(seed: int, count: int) -> TargetSet:
+    """Targets of the box for which the closed form has an approach."""
+    drawn = random_set(seed, 4 * count + 20)
+    reached = np.flatnonzero(feasible(drawn))[:count]
+    assert len(reached) == count, "nearly half of the box can be reached"
+    return drawn[reached]
+
+
+def feasible(targets: TargetSet) -> NDArray[np.bool_]:
+    """Which targets the closed form has an approach for, shape (n,)."""
+    problem = targets[:1].problem()
+    found = closed_form_optima(
+        problem, targets.positions, targets.directions, np.asarray(problem.start)
+    )
+    return np.asarray(found.branches != NO_BRANCH)
+
+
+def data_set_3() -> TargetSet:
+    """T's data set 3, five targets."""
+    rows: Sequence[dict[str, list[float]]] = demo_request()["targets"]
+    return TargetSet(
+        np.array([entry["position_m"] for entry in rows]),
+        np.array([entry["branch_direction"] for entry in rows]),
+    )
