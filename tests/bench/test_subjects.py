@@ -11,23 +11,13 @@ from bench.page import page
 from bench.registry import SUBJECTS, Subject
 from bench.results import as_document, read, rows_of, write
 
-# They need options of branches that are merged after this one.
-_LATER = {"ncos", "relaxed", "cold_starts", "optimal", "savings"}
-
 
 def test_every_file_has_a_row() -> None:
     folder = Path(__file__).parents[2] / "bench" / "subjects"
     assert {file.stem for file in folder.glob("*.py")} == {*SUBJECTS, "__init__"}
 
 
-@pytest.mark.parametrize(
-    "subject",
-    [
-        pytest.param(one, marks=pytest.mark.xfail(reason="not merged") if name in _LATER else ())
-        for name, one in SUBJECTS.items()
-    ],
-    ids=list(SUBJECTS),
-)
+@pytest.mark.parametrize("subject", SUBJECTS.values(), ids=list(SUBJECTS))
 def test_a_subject_yields_lines(subject: Subject, tmp_path: Path) -> None:
     rows = subject.measure(True)
     assert rows
