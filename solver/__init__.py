@@ -20,6 +20,7 @@ from solver.exceptions import (
 )
 from solver.planner import solve
 from solver.problem import Options, Problem, Target
+from solver.residual import Residual, Verification
 from solver.robots.model import Joint, Link, Robot, Tool, load_robot, parse_robot, robot_names
 from solver.robots.toml_writing import robot_to_toml
 from solver.robots.urdf_reading import robot_from_urdf
@@ -34,7 +35,7 @@ from solver.solution import (
     Trajectory,
     Transfer,
 )
-from solver.verification import Residual, Verification, verify, verify_plan
+from solver.verification import verify, verify_plan
 
 __all__ = [
     "Approach",

@@ -12,6 +12,7 @@ from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.methods.candidate import Candidate
+from solver.problem import Options
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import (
@@ -31,12 +32,13 @@ class CutIn:
 
     Attributes:
         path_joints: evenly spaced rows, shape (path_points, 6) [rad].
-        motion: what is executed.
-        deviation_m: how far that motion leaves the straight line, between its rows too [m].
+        motion: what is executed; None where no timing was asked for.
+        deviation_m: how far that motion leaves the straight line, between its rows too; without
+            timing, that of rows refined until they are straight [m].
     """
 
     path_joints: Array
-    motion: TimedRows
+    motion: TimedRows | None
     deviation_m: float
 
 
@@ -52,6 +54,12 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
 
     rows = path(np.linspace(0.0, options.standoff_m, options.path_points))
     pose = forward_kinematics(task.robot, task.tool, rows[-1])
+    if not options.timed:
+        line = (pose[:3, 3], pose[:3, 2])
+        deviation = refined_deviation(
+            task.robot, task.tool, options, rows[-1], candidate.branch, line
+        )
+        return CutIn(rows, None, deviation)
     step_s = TRAJECTORY_STEP_S
     for _ in range(TRAJECTORY_HALVINGS + 1):
         motion = time_cut_in(task.robot, options.standoff_m, rows, path, step_s)
@@ -94,6 +102,35 @@ def retreat_rows(
     pose = inverse(robot.mount) @ forward_kinematics(robot, tool, posture)
     retreat_from(wrist_geometry(robot, tool), pose, branch, retreats, rows)
     return rows
+
+
+def refined_deviation(
+    robot: Robot,
+    tool: Tool,
+    options: Options,
+    thinning: Array,
+    branch: int | None,
+    line: tuple[Array, Array],
+) -> float:
+    """Deviation from the line of rows that are refined until they are straight [m].
+
+    Args:
+        robot: the arm.
+        tool: its tool.
+        options: standoff, rows to begin with, and how straight is straight.
+        thinning: the posture at the target, shape (joints,).
+        branch: its branch; None without a closed form.
+        line: a point of the line, shape (3,) [m], and its unit direction, shape (3,).
+    """
+    count, deviation = options.path_points, np.inf
+    for _ in range(TRAJECTORY_HALVINGS + 1):
+        retreats = np.linspace(options.standoff_m, 0.0, count)
+        rows = retreat_rows(robot, tool, thinning, branch, retreats)
+        deviation = line_deviation(robot, tool, rows, *line)
+        if deviation <= options.straightness_m:
+            break
+        count = 2 * count - 1
+    return float(deviation)
 
 
 def line_deviation(robot: Robot, tool: Tool, rows: Array, point: Array, direction: Array) -> float:

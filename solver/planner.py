@@ -12,6 +12,7 @@ from solver.methods.candidate import Candidate
 from solver.problem import Problem, Target
 from solver.proposal import propose
 from solver.registry import METHODS
+from solver.sequencing.programmed import programmed
 from solver.sequencing.sequence import Stop, sequence
 from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, SolverReport
 from solver.tolerances import EXCHANGE_ROUNDS
@@ -30,7 +31,10 @@ def solve(problem: Problem) -> Plan:
     targets: Sequence[Target] = problem.targets
     stops: dict[str, Stop] = {}
     if problem.options.order == "optimal" or _as_one(problem):
-        stops = {stop.task.target.id: stop for stop in sequence(problem)}
+        chain = sequence(problem)
+        if problem.options.method == "ncos" and _as_one(problem):
+            chain = programmed(problem, chain)
+        stops = {stop.task.target.id: stop for stop in chain}
     if problem.options.order == "optimal":
         by_id = {target.id: target for target in targets}
         left_out = [target for target in targets if target.id not in stops]

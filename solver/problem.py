@@ -65,6 +65,11 @@ class Options:
     qp_solver: str = "daqp"
     include: Sequence[str] | None = None
 
+    @property
+    def timed(self) -> bool:
+        """Whether motion is part of the answer; by default it is, up to FULL_ANSWER_TARGETS."""
+        return self.include is None or not {"transfer", "trajectory"}.isdisjoint(self.include)
+
 
 @dataclass(frozen=True)
 class Problem:

@@ -8,12 +8,13 @@ from solver.approach.robustness import path_displacement_margin
 from solver.cut_in import CutIn
 from solver.effort import posture_effort
 from solver.methods.candidate import Candidate
+from solver.motion_verification import cut_in_margin
 from solver.problem import Problem, Target
 from solver.robots.model import Array
 from solver.solution import Approach, Segment, SolverReport, Trajectory, Transfer
 from solver.tolerances import TRAJECTORY_STEP_S
 from solver.trajectory.timing import TimedRows, time_joint_line
-from solver.verification import cut_in_margin, thinning_placement
+from solver.verification import thinning_placement
 
 PROPOSED = "proposed"
 
@@ -29,12 +30,14 @@ def propose(
     """The approach of a candidate, with a transfer from the reference posture [rad]."""
     start = np.asarray(reference, dtype=np.float64)
     standby, thinning = cut_in.path_joints[0], cut_in.path_joints[-1]
-    transfer = Transfer(
-        "joint_line",
-        np.array([start, standby]),
-        float(np.linalg.norm((standby - start) * problem.robot.turning)),
-    )
-    trajectory = _trajectory(problem, start, cut_in)
+    transfer = trajectory = None
+    if cut_in.motion is not None:
+        transfer = Transfer(
+            "joint_line",
+            np.array([start, standby]),
+            float(np.linalg.norm((standby - start) * problem.robot.turning)),
+        )
+        trajectory = _trajectory(problem, start, cut_in.motion)
     used = thinning_placement(problem, target, candidate.tool_side, thinning)
     options = problem.options
     return Approach(
@@ -66,15 +69,15 @@ def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) 
     )
 
 
-def _trajectory(problem: Problem, reference: Array, cut_in: CutIn) -> Trajectory:
-    standby, thinning = cut_in.motion.joints[0], cut_in.motion.joints[-1]
+def _trajectory(problem: Problem, reference: Array, motion: TimedRows) -> Trajectory:
+    standby, thinning = motion.joints[0], motion.joints[-1]
     dwell_s = problem.options.dwell_s
     still = np.array([thinning, thinning]) if dwell_s > 0 else thinning[None]
     pieces = {
         "transfer": time_joint_line(problem.robot, reference, standby, TRAJECTORY_STEP_S),
-        "cut_in": cut_in.motion,
+        "cut_in": motion,
         "dwell": TimedRows(np.array([0.0, dwell_s])[: len(still)], still),
-        "retreat": cut_in.motion.reversed(),
+        "retreat": motion.reversed(),
     }
     now = 0.0
     times, rows, segments = [np.zeros(1)], [reference[None]], []

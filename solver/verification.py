@@ -14,12 +14,14 @@ from solver.approach.frame import approach_frame
 from solver.approach.numerical import same_side
 from solver.approach.relaxation import Placement, placement, rotation, shortened
 from solver.approach.robustness import needed_margin, path_displacement_margin
-from solver.cut_in import line_deviation
+from solver.cut_in import refined_deviation
 from solver.effort import posture_effort
 from solver.kinematics.families import has_branches, rail_of
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES, inverse_kinematics
+from solver.motion_verification import Motion, cut_in_margin, motion_residuals, shape_residuals
 from solver.problem import Problem, Target
+from solver.residual import Residual, Verification
 from solver.robots.model import Array
 from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, Trajectory, Transfer
 from solver.tolerances import (
@@ -28,45 +30,12 @@ from solver.tolerances import (
     JOINT_RATE_RAD_M,
     LIMIT_EXCESS_RAD,
     POSITION_ERROR_M,
-    RATE_EXCESS_RELATIVE,
     SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
-from solver.trajectory.rates import rate_ratios
 
 MAY_BE_ABSENT = ("branch", "lower_bound", "displacement_margin_m")
-SEGMENTS = ("transfer", "cut_in", "dwell", "retreat")
-
-
-@dataclass(frozen=True)
-class Residual:
-    """One recomputed error and what is allowed; a value that is not a number is not accepted."""
-
-    name: str
-    value: float
-    allowed: float
-
-    @property
-    def accepted(self) -> bool:
-        """Whether the value is within what is allowed."""
-        return bool(self.value <= self.allowed)
-
-
-@dataclass(frozen=True)
-class Verification:
-    """All residuals of one approach."""
-
-    residuals: tuple[Residual, ...]
-
-    @property
-    def accepted(self) -> bool:
-        """Whether every residual is."""
-        return all(residual.accepted for residual in self.residuals)
-
-    @property
-    def failures(self) -> tuple[Residual, ...]:
-        """The residuals that are not."""
-        return tuple(residual for residual in self.residuals if not residual.accepted)
+TIMED_FIELDS = ("transfer", "trajectory")
 
 
 def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> Verification:
@@ -79,7 +48,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
             the previous planned standby, shape (6,) [rad].
     """
     target = next((t for t in problem.targets if t.id == approach.target_id), None)
-    claim = _claim(approach)
+    claim = _claim(problem, approach)
     if target is None or claim is None:
         return Verification((Residual("missing_fields", 1.0, 0.0),))
     parts = (
@@ -88,7 +57,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         _relaxation_residuals(problem, target, approach, claim),
         _number_residuals(problem, claim, reference),
         _displacement_residuals(problem, target, claim),
-        _motion_residuals(problem, target, claim, reference),
+        _timing_residuals(problem, target, claim, reference),
     )
     found: list[Residual] = []
     for part in parts:
@@ -138,14 +107,15 @@ class _Claim:
     effort: float
     margin_rad: float
     displacement_margin_m: float | None
-    transfer: Transfer
-    trajectory: Trajectory
+    transfer: Transfer | None
+    trajectory: Trajectory | None
     lower_bound: float | None
 
 
-def _claim(approach: Approach) -> _Claim | None:
+def _claim(problem: Problem, approach: Approach) -> _Claim | None:
     values = {entry.name: getattr(approach, entry.name) for entry in fields(_Claim)}
-    missing = any(value is None for name, value in values.items() if name not in MAY_BE_ABSENT)
+    may_be_absent = MAY_BE_ABSENT if problem.options.timed else (*MAY_BE_ABSENT, *TIMED_FIELDS)
+    missing = any(value is None for name, value in values.items() if name not in may_be_absent)
     return None if missing else _Claim(**values)
 
 
@@ -196,24 +166,16 @@ def _relaxation_residuals(
 
 def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
     n = len(problem.robot.joints)
-    trajectory, transfer = claim.trajectory, claim.transfer
     wanted: dict[str, tuple[Array, tuple[int, ...]]] = {
         "thinning_joints": (claim.thinning_joints, (n,)),
         "standby_joints": (claim.standby_joints, (n,)),
         "path_joints": (claim.path_joints, (problem.options.path_points, n)),
-        "trajectory": (trajectory.joints, (len(trajectory.times_s), n)),
-        "transfer": (transfer.joints, (len(transfer.joints), n)),
     }
     for name, (array, shape) in wanted.items():
         wrong = np.shape(array) != shape or not np.isfinite(np.asarray(array)).all()
         yield Residual(f"{name}_shape", float(wrong), 0.0)
-    names = tuple(segment.name for segment in trajectory.segments)
-    starts = [segment.start_s for segment in trajectory.segments]
-    ends = [segment.end_s for segment in trajectory.segments]
-    whole = names == SEGMENTS and starts[0] == 0.0 and starts[1:] == ends[:-1]
-    rising = len(trajectory.times_s) > 1 and bool(np.all(np.diff(trajectory.times_s) > 0))
-    covered = rising and trajectory.times_s[0] == 0.0 and ends[-1:] == [trajectory.times_s[-1]]
-    yield Residual("trajectory_times", float(not (whole and covered)), 0.0)
+    if claim.trajectory is not None and claim.transfer is not None:
+        yield from shape_residuals(claim.trajectory, claim.transfer, n)
     sides = (1, -1) if problem.options.symmetric_tool else (1,)
     yield Residual("tool_side", float(claim.tool_side not in sides), 0.0)
     yield Residual("approach_angle_turns", abs(claim.approach_angle_rad) / np.pi, 1.0)
@@ -274,6 +236,9 @@ def _number_residuals(
         yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
     margin = cut_in_margin(problem, claim.path_joints, claim.trajectory)
     yield Residual("margin_claim_rad", abs(margin - claim.margin_rad), SAME_POSTURE_RAD)
+    rows = np.asarray(claim.path_joints)
+    outside = np.maximum(problem.robot.lower - rows, rows - problem.robot.upper)
+    yield Residual("path_limit_excess_rad", float(outside.max()), LIMIT_EXCESS_RAD)
     excess = problem.options.limit_margin_rad - margin
     yield Residual("limit_excess_rad", excess, LIMIT_EXCESS_RAD)
 
@@ -291,61 +256,25 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
     yield Residual("uncertainty_excess_m", needed_margin(target) - margin, POSITION_ERROR_M)
 
 
-def cut_in_margin(problem: Problem, path_joints: Array, trajectory: Trajectory) -> float:
-    """Smallest distance of a revolute joint to its limit, in the rows and as executed [rad].
-
-    Prismatic joints have no margin in an angle; `trajectory_limit_excess` covers them.
-    """
-    executed = segment_rows(trajectory, "cut_in", "dwell", "retreat")[1]
-    rows = np.concatenate((path_joints, executed))
-    return float(problem.robot.limit_margin(rows).min())
-
-
-def segment_rows(trajectory: Trajectory, first: str, *others: str) -> tuple[Array, Array]:
-    """Times and rows of one segment, or of neighbouring ones, both ends included."""
-    wanted = [segment for segment in trajectory.segments if segment.name in (first, *others)]
-    times = trajectory.times_s
-    inside = (times >= wanted[0].start_s) & (times <= wanted[-1].end_s)
-    return times[inside], trajectory.joints[inside]
-
-
-def _motion_residuals(
+def _timing_residuals(
     problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
 ) -> Iterator[Residual]:
-    robot, trajectory, transfer = problem.robot, claim.trajectory, claim.transfer
-    standby, thinning = np.asarray(claim.standby_joints), np.asarray(claim.thinning_joints)
-    waypoints = {
-        "transfer": (np.asarray(reference), standby),
-        "cut_in": (standby, thinning),
-        "dwell": (thinning, thinning),
-        "retreat": (thinning, standby),
-    }
-    for name, (start, end) in waypoints.items():
-        times, rows = segment_rows(trajectory, name)
-        if not len(rows):
-            yield Residual(f"{name}_rows", 1.0, 0.0)
-            return
-        apart = max(np.abs(rows[0] - start).max(), np.abs(rows[-1] - end).max())
-        yield Residual(f"{name}_ends_rad", float(apart), SAME_POSTURE_RAD)
-        speed, acceleration = rate_ratios(times, rows, robot.velocity, robot.acceleration)
-        yield Residual(f"{name}_velocity_share", speed, 1 + RATE_EXCESS_RELATIVE)
-        yield Residual(f"{name}_acceleration_share", acceleration, 1 + RATE_EXCESS_RELATIVE)
-    corners = max(
-        np.abs(transfer.joints[0] - reference).max(), np.abs(transfer.joints[-1] - standby).max()
-    )
-    yield Residual("transfer_corners_rad", float(corners), SAME_POSTURE_RAD)
-    rows = np.concatenate((trajectory.joints, claim.path_joints))
-    outside = float(np.maximum(robot.lower - rows, rows - robot.upper).max())
-    yield Residual("trajectory_limit_excess_rad", outside, LIMIT_EXCESS_RAD)
-    dwell_times, dwell_rows = segment_rows(trajectory, "dwell")
-    waited = float(dwell_times[-1] - dwell_times[0])
-    yield Residual("dwell_s", abs(waited - problem.options.dwell_s), SAME_POSTURE_RAD)
-    still = float(np.abs(dwell_rows - thinning).max())
-    yield Residual("dwell_moves_rad", still, SAME_POSTURE_RAD)
     place, axes = _wanted_pose(problem, target, claim)
-    for name in ("cut_in", "retreat"):
-        _, rows = segment_rows(trajectory, name)
-        deviation = line_deviation(robot, problem.mounted_tool, rows, place, axes[:, 2])
-        yield Residual(f"{name}_deviation_m", deviation, problem.options.straightness_m)
-        claimed = deviation - claim.path_deviation_m
-        yield Residual(f"{name}_deviation_claim_m", claimed, POSITION_ERROR_M)
+    if claim.trajectory is None or claim.transfer is None:
+        deviation = refined_deviation(
+            problem.robot,
+            problem.mounted_tool,
+            problem.options,
+            claim.path_joints[-1],
+            claim.branch,
+            (place, axes[:, 2]),
+        )
+        yield Residual("path_deviation_m", deviation, problem.options.straightness_m)
+        yield Residual(
+            "path_deviation_claim_m", deviation - claim.path_deviation_m, POSITION_ERROR_M
+        )
+        return
+    motion = Motion(np.asarray(reference), claim.transfer, claim.trajectory)
+    yield from motion_residuals(
+        problem, motion, claim.path_joints, (place, axes[:, 2]), claim.path_deviation_m
+    )

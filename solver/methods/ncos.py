@@ -50,12 +50,17 @@ def solve_ncos(
         return solve_on_rail(task, rail)
     if not has_closed_form(task.robot, task.tool):
         return solve_other_arm(task)
-    coupling = _Coupling(task, next_thinning)
     if task.options.strike_zone_m > 0 or task.options.tilt_tolerance_rad > 0:
-        return _solve_with_relaxations(task, coupling)
+        return _solve_with_relaxations(task, _Coupling(task, next_thinning))
     warm_start = best_on_arcs(task)
-    if warm_start is None:
-        return why_none(task)
+    return why_none(task) if warm_start is None else improved(task, warm_start, next_thinning)
+
+
+def improved(
+    task: ApproachTask, warm_start: ArcOptimum, next_thinning: Sequence[float] | None = None
+) -> Candidate:
+    """The unrelaxed programme's approach from a warm start, or that start if it is not better."""
+    coupling = _Coupling(task, next_thinning)
     result = solve_on_arc(task, warm_start, next_thinning)
     kept = _at_angle(task, warm_start, warm_start.angle_rad)
     if not result.success:

@@ -25,10 +25,19 @@ ArcsOf = Callable[[ApproachTask], Sequence[Arc]]
 
 @dataclass(frozen=True)
 class Stop:
-    """A target in a sequence: its task, with the rows its cut-in had to have, and its approach."""
+    """A target in a sequence.
+
+    Attributes:
+        task: with the rows its cut-in had to have, seen from the start posture.
+        candidate: its approach.
+        arc: the feasible arc that the approach lies on.
+        angle_rad: the approach angle on that arc, not wrapped.
+    """
 
     task: ApproachTask
     candidate: Candidate
+    arc: Arc
+    angle_rad: float
 
 
 @dataclass(frozen=True)
@@ -141,6 +150,6 @@ def _stops(
             iterations=0,
             status="optimum_of_ladder",
         )
-        stops.append(Stop(task, candidate))
+        stops.append(Stop(task, candidate, arc, float(angle)))
         before = standby
     return tuple(stops)

@@ -1,5 +1,8 @@
 """Problems that several tests use: the thesis's data set 3, and seeded random targets."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from solver import Options, Problem, Robot, Target
@@ -17,6 +20,22 @@ DATA_SET_3 = (
 def data_set_3(robot: Robot, **options: object) -> Problem:
     """Data set 3 with options by keyword."""
     return Problem(robot, DATA_SET_3, options=Options(**options))  # type: ignore[arg-type]
+
+
+def targets_for(method: str, seed: int, count: int) -> list[Target]:
+    """Random targets that suit a method: fixed_z wants branches normal to the world's x axis."""
+    targets = random_targets(seed, count)
+    if method != "fixed_z":
+        return targets
+    return [replace(one, branch_direction=(0.0, *one.branch_direction[1:])) for one in targets]
+
+
+def in_front_of(arm: Robot, targets: Sequence[Target]) -> list[Target]:
+    """Targets moved with an arm that is mounted elsewhere."""
+    return [
+        replace(one, position_m=tuple(arm.mount[:3, :3] @ one.position_m + arm.mount[:3, 3]))
+        for one in targets
+    ]
 
 
 def random_targets(seed: int, count: int) -> list[Target]:

@@ -7,13 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver import Problem, Target
+from solver import Problem, Robot, Target
 from solver.approach.enclosure import enclosure, natural_enclosure
 from solver.approach.feasibility import posture, tool_axes
 from solver.approach.intervals import cosine, j_arc_cosine, j_arc_tangent, sine
 from solver.approach.task import approach_task
 from solver.robots.model import Array
 from tests.solver.kinematics.arms import arms
+from tests.solver.problems import in_front_of
 
 ARMS = arms()
 COORDINATE = st.floats(-0.5, 0.5)
@@ -70,10 +71,10 @@ def test_postures_of_a_cell_are_in_its_enclosure(
 
 
 @pytest.mark.parametrize("arm", ARMS[:4], ids=lambda arm: arm.name)
-def test_small_cells_have_small_enclosures(arm: object) -> None:
+def test_small_cells_have_small_enclosures(arm: Robot) -> None:
     """An enclosure that holds everything would pass the test above."""
-    target = Target("1", (0.2, 0.05, 0.35), (-1, -1, 1))
-    problem = Problem(arm, [target])  # type: ignore[arg-type]
+    (target,) = in_front_of(arm, [Target("1", (0.2, 0.05, 0.35), (-1, -1, 1))])
+    problem = Problem(arm, [target])
     task = approach_task(problem, target, problem.start).for_kernels(1)
     q, slopes, middle = (np.empty((6, 2)) for _ in range(3))
     narrow = 0

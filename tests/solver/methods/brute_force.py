@@ -16,9 +16,10 @@ def _sweep(task, angles):  # type: ignore[no-untyped-def]
         for branch in range(8):
             if thinning(task, angle, branch, rows[-1]) < 0:
                 continue
-            cost = effort(task, rows[-1])
-            if cost < best and trace(task, angle, branch, task.retreats, rows) >= 0:
-                best = cost
+            # The whole cut-in may put a joint on a dearer turn than thinning alone.
+            cheaper = effort(task, rows[-1]) < best
+            if cheaper and trace(task, angle, branch, task.retreats, rows) >= 0:
+                best = min(best, effort(task, rows[-1]))
     return best
 
 
