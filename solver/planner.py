@@ -80,7 +80,7 @@ def plan_target(
     if stop is None:
         outcome, task = _solve_between_rows_too(task)
     else:
-        outcome, task = stop.candidate, stop.task
+        outcome, task = stop.candidate, replace(stop.task, reference=task.reference)
     elapsed = time.perf_counter() - started
     method = problem.options.method
     if isinstance(outcome, Reason):

@@ -22,12 +22,16 @@ from solver.approach.packed import (
 from solver.approach.turns import (
     BESIDE,
     CONSTRAINTS,
+    JOINT_OF_ROW,
     JUMP,
     REACH,
+    ROW_CONSTRAINTS,
     TURN_ROWS,
+    WRIST_ROWS,
     jump_margin,
     passes_behind,
     path_margins,
+    row_constraints,
     row_margin,
     swings,
     turns_along_path,
@@ -66,6 +70,7 @@ class ArcScratch(NamedTuple):
 
     thinning: Array
     standby: Array
+    values: Array
     cosines: Array
     sines: Array
     paths: Array
@@ -84,6 +89,7 @@ def arc_scratch(rows):
     return ArcScratch(
         np.empty((TURN_ROWS, ARC_CELLS)),
         np.empty((TURN_ROWS, ARC_CELLS)),
+        np.empty((ROW_CONSTRAINTS, ARC_CELLS)),
         np.empty(ARC_CELLS),
         np.empty(ARC_CELLS),
         np.empty((ARC_CELLS, TURN_ROWS, rows)),
@@ -111,30 +117,56 @@ def peak_above(before, left, right, after):
 
 
 @kernel
-def close_cells(task, turns, column, wrist, open_cells):
+def close_cells(task, turns, count, column, values, open_cells):
     """Closes cells in which a constraint of one row is certainly negative; returns how many stay.
 
-    `column` has the column of each node in turns.
+    Args:
+        task: the packed task.
+        turns: of the row, shape (TURN_ROWS, count or more).
+        count: how many columns are in use.
+        column: the column of each node.
+        values: working memory, shape (ROW_CONSTRAINTS, ARC_CELLS).
+        open_cells: shape (2, ARC_CELLS), by wrist.
     """
-    left_open = 0
+    row_constraints(task, turns, count, values)
+    stay = 0
     for k in range(ARC_CELLS):
-        if not open_cells[k]:
+        if not (open_cells[0, k] or open_cells[1, k]):
             continue
-        before, left = column[(k - 1) % ARC_CELLS], column[k]
-        right, after = column[(k + 1) % ARC_CELLS], column[(k + 2) % ARC_CELLS]
-        # Joints have a cusp at the edge of reach, of which slopes outside the cell do not tell.
-        first = REACH if enters_reach(turns, left, turns, right) else 0
-        for i in range(first, JUMP):
-            a = row_margin(task, turns, left, wrist, i)
-            b = row_margin(task, turns, right, wrist, i)
-            if a < 0.0 and b < 0.0:
-                outer_a = row_margin(task, turns, before, wrist, i)
-                outer_b = row_margin(task, turns, after, wrist, i)
-                if peak_above(outer_a, a, b, outer_b) < 0.0 and not _swung(turns, left, right, i):
-                    open_cells[k] = False
-                    break
-        left_open += open_cells[k]
-    return left_open
+        places = (
+            column[(k - 1) % ARC_CELLS],
+            column[k],
+            column[(k + 1) % ARC_CELLS],
+            column[(k + 2) % ARC_CELLS],
+        )
+        if certainly_broken(turns, values, places, 0, WRIST_ROWS):
+            open_cells[0, k] = open_cells[1, k] = False
+            continue
+        for wrist in range(2):
+            if open_cells[wrist, k]:
+                first = WRIST_ROWS + 3 * wrist
+                if certainly_broken(turns, values, places, first, first + 3):
+                    open_cells[wrist, k] = False
+                else:
+                    stay += 1
+    return stay
+
+
+@kernel
+def certainly_broken(turns, values, places, first, last):
+    """Whether one of some constraints is negative in the whole cell between places 1 and 2."""
+    before, left, right, after = places
+    # Joints have a cusp at the edge of reach, of which slopes outside the cell do not tell.
+    edge = enters_reach(turns, left, turns, right)
+    for row in range(first, last):
+        a, b = values[row, left], values[row, right]
+        if a < 0.0 and b < 0.0:
+            i = JOINT_OF_ROW[row]
+            if i >= 0 and (edge or swung(turns, left, turns, right, i)):
+                continue
+            if peak_above(values[row, before], a, b, values[row, after]) < 0.0:
+                return True
+    return False
 
 
 @kernel
@@ -145,13 +177,10 @@ def enters_reach(left, m, right, n):
 
 
 @kernel
-def _swung(turns, left, right, i):
-    if i > 5:
-        return False
-    change = (
-        turns[2 * i, left] * turns[2 * i, right] + turns[2 * i + 1, left] * turns[2 * i + 1, right]
-    )
-    return change < CELL_SWING_COSINE
+def swung(left, m, right, n, i):
+    """Whether joint i turns so far between two columns that its margin need not be smooth."""
+    cosines = left[2 * i, m] * right[2 * i, n]
+    return cosines + left[2 * i + 1, m] * right[2 * i + 1, n] < CELL_SWING_COSINE
 
 
 @kernel
@@ -184,10 +213,8 @@ def find_arcs(task, scratch, arcs):
         turns_at_angles(task, _COSINES, _SINES, ARC_CELLS, 0.0, arm, scratch.thinning)
         open_cells[:] = True
         column[:] = np.arange(ARC_CELLS)
-        some = 0
-        for wrist in range(2):
-            some += close_cells(task, scratch.thinning, column, wrist, open_cells[wrist])
-        if some == 0:
+        values = scratch.values
+        if close_cells(task, scratch.thinning, ARC_CELLS, column, values, open_cells) == 0:
             continue
         needed_nodes(open_cells, needed)
         listed = 0
@@ -200,10 +227,7 @@ def find_arcs(task, scratch, arcs):
         turns_at_angles(
             task, scratch.cosines, scratch.sines, listed, standoff, arm, scratch.standby
         )
-        some = 0
-        for wrist in range(2):
-            some += close_cells(task, scratch.standby, column, wrist, open_cells[wrist])
-        if some == 0:
+        if close_cells(task, scratch.standby, listed, column, values, open_cells) == 0:
             continue
         needed_nodes(open_cells, needed)
         for k in range(ARC_CELLS):
@@ -235,6 +259,13 @@ def branch_arcs(task, scratch, arm, wrist, open_cells, arcs, count):
             count = append_arc(arcs, start, count, arm, wrist, low, high, JUMP, JUMP)
             continue
         clean = state == DEAD
+        if state == EDGE:
+            clean, a, b, by_a, by_b = tighten(
+                task, scratch, arm, wrist, REACH, JUMP, low, high,
+                paths[k], paths[after], left, right,
+            )  # fmt: skip
+            if clean and a < b:
+                count = settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count)
         if state == CROSSED:
             clean, a, b, by_a, by_b = tighten(
                 task, scratch, arm, wrist, 0, CONSTRAINTS, low, high,
@@ -243,7 +274,7 @@ def branch_arcs(task, scratch, arm, wrist, open_cells, arcs, count):
             if clean and a < b:
                 count = append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
         if not clean:
-            count = settle(task, scratch, arm, wrist, low, high, arcs, start, count)
+            count = settle(task, scratch, arm, wrist, low, high, JUMP, JUMP, arcs, start, count)
     return close_turn(arcs, start, count)
 
 
@@ -266,9 +297,24 @@ def path_state(task, wrist, outer, left, right, beyond, left_margins, right_marg
         joint swings. EDGE where the arm enters its reach: joints have a cusp there.
     """
     rows = len(task.retreats)
-    for n in range(rows):
-        if enters_reach(left, n, right, n):
-            return EDGE, -1, 0
+    for i in range(JUMP):
+        if left_margins[i] >= 0.0 or right_margins[i] >= 0.0:
+            continue
+        for n in range(rows):
+            a, b = row_margin(task, left, n, wrist, i), row_margin(task, right, n, wrist, i)
+            if a >= 0.0 or b >= 0.0:
+                continue
+            if i < REACH and (enters_reach(left, n, right, n) or swung(left, n, right, n, i)):
+                continue
+            before = row_margin(task, outer, n, wrist, i)
+            if peak_above(before, a, b, row_margin(task, beyond, n, wrist, i)) < 0.0:
+                return DEAD, -1, 0
+    if min(left_margins[REACH], right_margins[REACH]) < 0.0 or (
+        min(left_margins[BESIDE], right_margins[BESIDE]) < 0.0
+    ):
+        for n in range(rows):
+            if enters_reach(left, n, right, n):
+                return EDGE, -1, 0
     if swings(left, right, rows, CELL_SWING_COSINE):
         return EXTREME, -1, 0
     state, extreme, at_row = FULL, -1, 0
@@ -291,12 +337,10 @@ def path_state(task, wrist, outer, left, right, beyond, left_margins, right_marg
                 row_margin(task, outer, n, wrist, i),
                 row_margin(task, beyond, n, wrist, i),
             )
-            if a < 0.0:
-                if peak_above(before, a, b, after) < 0.0:
-                    return DEAD, -1, 0
-                extreme, at_row = i, n
-            elif peak_above(-before, -a, -b, -after) > 0.0 or (
-                turns_round and passes_behind(task, left, n, right, n, wrist, i)
+            if (
+                a < 0.0
+                or peak_above(-before, -a, -b, -after) > 0.0
+                or (turns_round and passes_behind(task, left, n, right, n, wrist, i))
             ):
                 extreme, at_row = i, n
     a, b = left_margins[JUMP], right_margins[JUMP]
@@ -346,10 +390,10 @@ def push(stack, top, low, high, by_low, by_high):
 
 
 @kernel
-def settle(task, scratch, arm, wrist, low, high, arcs, start, count):
+def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count):
     """Appends the feasible pieces of a cell that has to be split; returns the new count."""
     stack = np.empty((64, 4))
-    push(stack, 0, low, high, JUMP, JUMP)
+    push(stack, 0, low, high, by_low, by_high)
     top = 1
     paths, margins = scratch.cell_paths, scratch.cell_margins
     while top > 0:

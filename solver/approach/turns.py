@@ -28,6 +28,12 @@ CONSTRAINTS = 9
 """Margins of one branch: six joints (cosine form), the reach [m], the shoulder's offset beside the
 waist's axis [m], the wrist jump (cosine form)."""
 
+ROW_CONSTRAINTS = 11
+WRIST_ROWS = 5
+JOINT_OF_ROW = (-1, -1, 0, 1, 2, 3, 4, 5, 3, 4, 5)
+"""Constraints of one row of the cut-in for both wrists: the two reaches, joints 1 to 3, joints 4 to
+6 of wrist 0, then of wrist 1."""
+
 
 @inlined
 def write_turns(g, circle, cos, sin, retreat, shoulder, elbow, turns, n):
@@ -87,6 +93,20 @@ def turn_margin(task, turns, n, wrist, i):
     cos = wrist_sign(wrist, i, True) * task.numbers[COS_MIDDLE + i]
     sin = wrist_sign(wrist, i, False) * task.numbers[SIN_MIDDLE + i]
     return cos * turns[2 * i, n] + sin * turns[2 * i + 1, n] - task.numbers[COS_HALF + i]
+
+
+@kernel
+def row_constraints(task, turns, count, values):
+    """Margins of one row's constraints at many angles, shape (ROW_CONSTRAINTS, count)."""
+    for n in range(count):
+        values[0, n], values[1, n] = turns[12, n], turns[13, n]
+    for row in range(2, ROW_CONSTRAINTS):
+        i, wrist = JOINT_OF_ROW[row], 1 if row >= WRIST_ROWS + 3 else 0
+        cos = wrist_sign(wrist, i, True) * task.numbers[COS_MIDDLE + i]
+        sin = wrist_sign(wrist, i, False) * task.numbers[SIN_MIDDLE + i]
+        half = task.numbers[COS_HALF + i]
+        for n in range(count):
+            values[row, n] = cos * turns[2 * i, n] + sin * turns[2 * i + 1, n] - half
 
 
 @kernel

@@ -23,10 +23,13 @@ def data_set_3(robot: Robot, **options: object) -> Problem:
 
 
 def targets_for(method: str, seed: int, count: int) -> list[Target]:
-    """Random targets that suit a method: fixed_z wants branches normal to the world's x axis."""
-    targets = random_targets(seed, count)
+    """Random targets that suit a method.
+
+    `fixed_z` wants branches normal to the world's x axis, and finds an approach to few of them.
+    """
     if method != "fixed_z":
-        return targets
+        return random_targets(seed, count)
+    targets = random_targets(seed, 4 * count)
     return [replace(one, branch_direction=(0.0, *one.branch_direction[1:])) for one in targets]
 
 
