@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.approach.between_rows import may_leave_between
 from solver.approach.feasibility import retreat_from
 from solver.approach.task import ApproachTask
 from solver.kinematics.families import rail_of
@@ -17,6 +18,7 @@ from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import (
     DEVIATION_SAMPLES,
+    EVEN_ROWS_M,
     EXCHANGE_DENSITY,
     EXCHANGE_ZOOMS,
     LIMIT_EXCESS_RAD,
@@ -157,6 +159,10 @@ def broken_limit(task: ApproachTask, candidate: Candidate) -> float | None:
     The limits are those of the task, less the margin asked for.
     """
     coarse = np.asarray(task.retreats_m)
+    spacing = np.diff(coarse)
+    even = bool(np.all(np.abs(spacing - spacing[0]) <= EVEN_ROWS_M))
+    if even and not may_leave_between(_postures(task, candidate, coarse), task.lower, task.upper):
+        return None
     shares = np.arange(EXCHANGE_DENSITY)[:, None] / EXCHANGE_DENSITY
     retreats = np.append((coarse[:-1] + shares * np.diff(coarse)).T.ravel(), 0.0)
     for _ in range(EXCHANGE_ZOOMS):

@@ -99,6 +99,15 @@ target solved again. One or two are usual: the posture moves quadratically littl
 EXCHANGE_DENSITY: Final = 8
 """Postures looked at between two rows of the cut-in when such a posture is searched."""
 
+EVEN_ROWS_M: Final = 1e-12
+"""Rows whose distances differ by less are evenly spaced [m]: rounding."""
+
+BETWEEN_ROWS_REACH: Final = 0.25
+"""How far beyond two rows, in their distance, the vertex of a parabola counts as between them."""
+
+BETWEEN_ROWS_CUSHION: Final = 0.05
+"""Share of a joint's second difference that its parabola may be wrong by between two rows."""
+
 EXCHANGE_ZOOMS: Final = 4
 """How often the place of that posture is narrowed, eightfold each time: 2 mm to 0.5 um."""
 

@@ -11,7 +11,7 @@ from solver.approach.robustness import robust_arcs
 from solver.approach.task import ApproachTask, approach_task
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem import Problem, Target
-from solver.robots.model import Array
+from solver.robots.model import Array, Robot
 from solver.tolerances import ARC_SAMPLES
 
 
@@ -74,13 +74,23 @@ def sample_angles_of(task: ApproachTask, tool_side: int, angles: Array) -> tuple
 
 def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
     """Feasible arcs of every branch and tool side that bear the target's uncertainty."""
-    limits = (*task.robot.joint_names, "reach", "reach", "wrist_jump")
-    arcs: list[Arc] = []
+    names, arcs = limit_names(task.robot), []
     for side in task.tool_sides:
-        for branch, low, high, by_low, by_high in arcs_of(task.packed(side)):
-            ends = (None if code == WHOLE_TURN else limits[int(code)] for code in (by_low, by_high))
-            arcs.append(Arc(side, int(branch), float(low), float(high), *ends))
+        found: list[list[float]] = arcs_of(task.packed(side)).tolist()
+        arcs += [named_arc(side, arc, names) for arc in found]
     return robust_arcs(task, arcs)
+
+
+def limit_names(robot: Robot) -> tuple[str, ...]:
+    """Names of the constraints that end arcs, in the order of the kernels."""
+    return (*robot.joint_names, "reach", "reach", "wrist_jump")
+
+
+def named_arc(tool_side: int, arc: Sequence[float], names: Sequence[str]) -> Arc:
+    """An arc from the kernels' columns: branch, ends [rad] and what ends it."""
+    branch, low, high, *codes = arc
+    ends = (None if code == WHOLE_TURN else names[int(code)] for code in codes)
+    return Arc(tool_side, int(branch), low, high, *ends)
 
 
 def survey_target(problem: Problem, target: Target, reference: Sequence[float]) -> Survey:

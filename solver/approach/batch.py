@@ -1,19 +1,23 @@
 """The closed form's optimum for many targets at once."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.batch_search import NO_BRANCH, optimise
+from solver.approach.arcs import Arc, limit_names, named_arc
+from solver.approach.batch_search import NO_BRANCH, arcs_of_many, optimise, paths_of_many
 from solver.approach.frame import approach_frames
 from solver.approach.packed import jump_cosines, pack
+from solver.approach.robustness import robust_arcs
+from solver.approach.task import approach_task
 from solver.kinematics.spherical_wrist import wrist_geometry
-from solver.problem import Problem
+from solver.problem import Problem, Target
 from solver.robots.model import Array
 from solver.robots.rigid import inverse
 
-__all__ = ["NO_BRANCH", "Optima", "closed_form_optima"]
+__all__ = ["NO_BRANCH", "Optima", "chosen_paths", "closed_form_optima", "feasible_arcs"]
 
 
 @dataclass(frozen=True)
@@ -48,30 +52,8 @@ def closed_form_optima(
         directions: branch directions of any length, shape (n, 3).
         references: postures from which effort counts, shape (n, 6) or (6,) [rad].
     """
-    options, robot = problem.options, problem.robot
-    geometry = wrist_geometry(robot, problem.mounted_tool)
-    limits = (
-        robot.lower + options.limit_margin_rad,
-        robot.upper - options.limit_margin_rad,
-    )
-    branch, outward, sideways = approach_frames(positions, directions)
-    mount = inverse(robot.mount)
-    turn = mount[:3, :3].T
-    placed = positions @ turn + mount[:3, 3]
-    sides = (1, -1) if options.symmetric_tool else (1,)
-    numbers = np.stack(
-        [
-            pack(
-                geometry,
-                limits,
-                (placed, side * branch @ turn, outward @ turn, sideways @ turn),
-                references,
-                np.asarray(problem.joint_weights),
-                options.norm == "l2",
-            )
-            for side in sides
-        ]
-    )
+    options = problem.options
+    numbers = packed_targets(problem, positions, directions, references)
     retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
     n = len(positions)
     found = (
@@ -84,3 +66,85 @@ def closed_form_optima(
     )
     optimise(numbers, retreats, jump_cosines(retreats), *found)
     return Optima(*found)
+
+
+def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
+    """The feasible arcs of every target of a problem, by target id; those of `task_arcs`."""
+    targets, options = problem.targets, problem.options
+    positions = np.array([target.position_m for target in targets], dtype=np.float64)
+    directions = np.array([target.branch_direction for target in targets], dtype=np.float64)
+    numbers = packed_targets(problem, positions, directions, np.asarray(problem.start))
+    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    table = arcs_of_many(numbers, retreats, jump_cosines(retreats))
+    found: dict[str, list[Arc]] = {target.id: [] for target in targets}
+    names = limit_names(problem.robot)
+    for k, side, *arc in table.tolist():
+        found[targets[int(k)].id].append(named_arc(1 - 2 * int(side), arc, names))
+    return {target.id: _robust(problem, target, found[target.id]) for target in targets}
+
+
+def _robust(problem: Problem, target: Target, arcs: list[Arc]) -> tuple[Arc, ...]:
+    if not target.position_std_m:
+        return tuple(arcs)
+    return robust_arcs(approach_task(problem, target, problem.start), arcs)
+
+
+@dataclass(frozen=True)
+class ChosenPaths:
+    """Cut-ins at chosen approaches.
+
+    Attributes:
+        joints: standby first, shape (n, rows, 6) [rad].
+        suspicious: whether a joint may leave its limits between two rows, shape (n,).
+    """
+
+    joints: Array
+    suspicious: NDArray[np.bool_]
+
+
+def chosen_paths(
+    problem: Problem, targets: Sequence[Target], arcs: Sequence[Arc], angles_rad: Array
+) -> ChosenPaths:
+    """The cut-ins of n targets, each on an arc of its own at an angle, shape (n,) [rad]."""
+    options = problem.options
+    positions = np.array([target.position_m for target in targets], dtype=np.float64)
+    directions = np.array([target.branch_direction for target in targets], dtype=np.float64)
+    numbers = packed_targets(problem, positions, directions, np.asarray(problem.start))
+    sides = np.array([(1 - arc.tool_side) // 2 for arc in arcs])
+    branches = np.array([arc.branch for arc in arcs])
+    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    n = len(targets)
+    joints, suspicious = np.empty((n, len(retreats), 6)), np.empty(n, dtype=np.bool_)
+    own = np.ascontiguousarray(numbers[sides, np.arange(n)])
+    paths_of_many(own, branches, angles_rad, retreats, jump_cosines(retreats), joints, suspicious)
+    return ChosenPaths(joints, suspicious)
+
+
+def packed_targets(
+    problem: Problem, positions: Array, directions: Array, references: Array
+) -> Array:
+    """Targets for the inner loops by tool side and target, shape (sides, n, NUMBERS)."""
+    options, robot = problem.options, problem.robot
+    geometry = wrist_geometry(robot, problem.mounted_tool)
+    limits = (
+        robot.lower + options.limit_margin_rad,
+        robot.upper - options.limit_margin_rad,
+    )
+    branch, outward, sideways = approach_frames(positions, directions)
+    mount = inverse(robot.mount)
+    turn = mount[:3, :3].T
+    placed = positions @ turn + mount[:3, 3]
+    sides = (1, -1) if options.symmetric_tool else (1,)
+    return np.stack(
+        [
+            pack(
+                geometry,
+                limits,
+                (placed, side * branch @ turn, outward @ turn, sideways @ turn),
+                references,
+                np.asarray(problem.joint_weights),
+                options.norm == "l2",
+            )
+            for side in sides
+        ]
+    )

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, arc_scratch, find_arcs
-from solver.approach.packed import PackedTask
+from solver.approach.between_rows import may_leave_between
+from solver.approach.packed import LOWER, UPPER, PackedTask
 from solver.approach.search import effort_scratch, least_effort, path_joints
 from solver.approach.turns import TURN_ROWS, turns_along_path
 from solver.compiled import kernel
@@ -43,3 +44,41 @@ def optimise(numbers, retreats, cos_steps, angles, sides, branches, efforts, pat
         task = PackedTask(numbers[chosen, k], retreats, cos_steps)
         turns_along_path(task, angle, branch // 2, turns)
         path_joints(task, turns, branch % 2, joints, paths[k])
+
+
+@kernel
+def arcs_of_many(numbers, retreats, cos_steps):
+    """Feasible arcs of many targets, shape (arcs, 2 + ARC_COLUMNS).
+
+    Columns: target, tool side as its place in `numbers`, then those of one target's arcs.
+    """
+    scratch = arc_scratch(len(retreats))
+    arcs = np.empty((MOST_ARCS, ARC_COLUMNS))
+    table, count = np.empty((4 * numbers.shape[1] + MOST_ARCS, 2 + ARC_COLUMNS)), 0
+    for k in range(numbers.shape[1]):
+        for side in range(numbers.shape[0]):
+            own = find_arcs(PackedTask(numbers[side, k], retreats, cos_steps), scratch, arcs)
+            if count + own > len(table):
+                table = np.concatenate((table, np.empty_like(table)))
+            for i in range(own):
+                table[count, 0], table[count, 1] = k, side
+                table[count, 2:] = arcs[i]
+                count += 1
+    return table[:count].copy()
+
+
+@kernel
+def paths_of_many(numbers, branches, angles, retreats, cos_steps, joints, suspicious):
+    """Cut-ins at chosen angles, and whether each may leave its limits between two rows.
+
+    `numbers` are packed rows, shape (n, NUMBERS); the last two are written, shape (n, rows, 6) and
+    (n,).
+    """
+    rows = len(retreats)
+    turns, scratch = np.empty((TURN_ROWS, rows)), np.empty((6, rows))
+    for k in range(len(numbers)):
+        task = PackedTask(numbers[k], retreats, cos_steps)
+        turns_along_path(task, angles[k], branches[k] // 2, turns)
+        path_joints(task, turns, branches[k] % 2, scratch, joints[k])
+        lower, upper = numbers[k, LOWER : LOWER + 6], numbers[k, UPPER : UPPER + 6]
+        suspicious[k] = may_leave_between(joints[k], lower, upper)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.approach.arcs import Arc, task_arcs
+from solver.approach.batch import chosen_paths, feasible_arcs
 from solver.approach.frame import signed_angle
 from solver.approach.task import ApproachTask, approach_task
 from solver.cut_in import broken_limit
@@ -68,7 +69,11 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
         arcs_of: the feasible arcs of a task; one without length is a single approach.
     """
     tasks = [approach_task(problem, target, problem.start) for target in problem.targets]
-    arcs = [tuple(arcs_of(task)) for task in tasks]
+    if arcs_of is task_arcs:
+        found = feasible_arcs(problem)
+        arcs = [found[target.id] for target in problem.targets]
+    else:
+        arcs = [tuple(arcs_of(task)) for task in tasks]
     order = [k for k in range(len(tasks)) if arcs[k]]
     if problem.options.order == "optimal":
         order = _chosen_order(problem, tasks, arcs, order)
@@ -77,10 +82,12 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
         order = [k for k in order if arcs[k]]
         if not order:
             return ()
-        stops = _stops(problem, [tasks[k] for k in order], [arcs[k] for k in order])
-        broken = [broken_limit(stop.task, stop.candidate) for stop in stops]
+        stops, suspicious = _stops(problem, [tasks[k] for k in order], [arcs[k] for k in order])
         again = False
-        for k, retreat in zip(order, broken, strict=True):
+        for k, stop, suspect in zip(order, stops, suspicious, strict=True):
+            # Rows that were added lie unevenly, which the quick look cannot judge.
+            looked_at = suspect or len(stop.task.retreats_m) > problem.options.path_points
+            retreat = broken_limit(stop.task, stop.candidate) if looked_at else None
             if retreat is not None and retreat not in tasks[k].retreats_m:
                 tasks[k] = tasks[k].with_retreat(retreat)
                 arcs[k] = tuple(arcs_of(tasks[k]))
@@ -131,15 +138,16 @@ def _chosen_order(
 
 def _stops(
     problem: Problem, tasks: Sequence[ApproachTask], arcs: Sequence[Sequence[Arc]]
-) -> tuple[Stop, ...]:
+) -> tuple[tuple[Stop, ...], Sequence[bool]]:
+    """The stops of targets in order, and whether each may break a limit between its rows."""
     chain = least_chain(gather(tasks, arcs), np.arange(len(tasks)))
     every = [arc for own in arcs for arc in own]
-    ends = np.array([problem.options.standoff_m, 0.0])
+    chosen = [every[index] for index in chain.arcs]
+    paths = chosen_paths(problem, [task.target for task in tasks], chosen, chain.angles)
     before: Array = np.asarray(problem.start)
     stops = []
-    for task, index, angle in zip(tasks, chain.arcs, chain.angles, strict=True):
-        arc = every[index]
-        standby, thinning = task.postures(float(angle), arc.tool_side, arc.branch, ends)
+    for task, arc, angle, path in zip(tasks, chosen, chain.angles, paths.joints, strict=True):
+        standby, thinning = path[0], path[-1]
         effort = posture_effort(thinning, before, problem.joint_weights, problem.options.norm)
         candidate = Candidate(
             approach_angle_rad=signed_angle(float(angle)),
@@ -152,4 +160,4 @@ def _stops(
         )
         stops.append(Stop(task, candidate, arc, float(angle)))
         before = standby
-    return tuple(stops)
+    return tuple(stops), paths.suspicious.tolist()
