@@ -44,6 +44,7 @@ _ALL = (
     Subject("given", "Order `given`, against ladder graphs"),
     Subject("optimal", "Order `optimal`, against longer searches"),
     Subject("savings", "Effort saved"),
+    Subject("certificate", "Proven bounds"),
     Subject("large_batch", "100,000 targets"),
     Subject("second_process", "Start of a second process"),
     Subject("thesis", "Beside the thesis: data set 3"),

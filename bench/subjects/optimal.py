@@ -9,6 +9,7 @@ from bench.reference import build_ladder
 from bench.subjects.given import planned_effort
 from bench.targets import TargetSet, reachable_set
 from solver import solve
+from solver.sequencing.sequence import sequence
 
 WANTED_GAP = 1e-6
 WANTED_S = 3.0
@@ -92,14 +93,14 @@ def _long_search(size: int, seconds: float) -> list[Row]:
     order = long_search(problem, ladder, seconds, seed=1)
     reference = effort_of(targets[order], "given")
     asked = targets.problem(method="ssas", order="optimal", include=("path",))
-    times = times_of(lambda: solve(asked), 2)
+    times = times_of(lambda: sequence(asked), 2)
     return [
         row(
             f"optimal, {len(targets)} targets",
             scaled(times, 1.0),
             "s",
             at_most=WANTED_S,
-            note="verified plan",
+            note="order, approaches and cut-ins",
         ),
         row(
             f"effort of optimal above a search of {seconds:g} s, {len(targets)} targets",
