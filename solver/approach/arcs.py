@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.approach.arc_search import WHOLE_TURN, arcs_of
+from solver.approach.arc_search import WHOLE_TURN
+from solver.approach.batch_search import arcs_of_many
 from solver.approach.feasibility import sample
 from solver.approach.robustness import robust_arcs
 from solver.approach.task import ApproachTask, approach_task
@@ -74,10 +75,11 @@ def sample_angles_of(task: ApproachTask, tool_side: int, angles: Array) -> tuple
 
 def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
     """Feasible arcs of every branch and tool side that bear the target's uncertainty."""
-    names, arcs = limit_names(task.robot), []
-    for side in task.tool_sides:
-        found: list[list[float]] = arcs_of(task.packed(side)).tolist()
-        arcs += [named_arc(side, arc, names) for arc in found]
+    sides, names = task.tool_sides, limit_names(task.robot)
+    packed = [task.packed(side) for side in sides]
+    numbers = np.stack([one.numbers for one in packed])[:, None]
+    found = arcs_of_many(numbers, packed[0].retreats, packed[0].cos_steps).tolist()
+    arcs = [named_arc(sides[int(side)], arc, names) for _, side, *arc in found]
     return robust_arcs(task, arcs)
 
 

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
-from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, arc_scratch, find_arcs
+from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, find_arcs
 from solver.approach.between_rows import may_leave_between
 from solver.approach.packed import LOWER, UPPER, PackedTask
+from solver.approach.roots import arc_scratch
 from solver.approach.search import effort_scratch, least_effort, path_joints
 from solver.approach.turns import TURN_ROWS, turns_along_path
 from solver.compiled import kernel
