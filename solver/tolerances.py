@@ -79,6 +79,13 @@ ROUND_TURN_COSINE: Final = -0.6
 """Cosine of half a joint's range below which it can be inside its limits at both ends of a cell
 and have passed what it may not in between, without turning by CELL_SWING_COSINE."""
 
+NARROW_JUMP_RAD: Final = 3e-3
+"""Width to which cells with a jump at both ends are halved before slopes are believed [rad]."""
+
+STEEPEST_JUMP: Final = 20.0
+"""How fast the margin of a jump (a difference of cosines) may rise with the angle [1/rad]; where it
+would have to rise faster between the ends of a cell, the whole cell jumps."""
+
 NARROWEST_CELL_RAD: Final = 1e-6
 """Cells are not halved further [rad]: a hundredth of the narrowest arc that may not be missed."""
 

@@ -98,7 +98,7 @@ def branch_arcs(task, scratch, arm, wrist, open_cells, arcs, count):
         beyond = paths[(k + 2) % ARC_CELLS]
         left, right = margins[k], margins[after]
         state, _, _ = path_state(
-            task, wrist, outer, paths[k], paths[after], beyond, left, right
+            task, wrist, _STEP, outer, paths[k], paths[after], beyond, left, right
         )  # fmt: skip
         low, high = _ANGLES[k], _ANGLES[k + 1]
         if state == FULL:
@@ -175,7 +175,7 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
         path_margins(task, paths[1], wrist, margins[0])
         path_margins(task, paths[2], wrist, margins[1])
         state, i, row = path_state(
-            task, wrist, paths[0], paths[1], paths[2], paths[3], margins[0], margins[1]
+            task, wrist, width, paths[0], paths[1], paths[2], paths[3], margins[0], margins[1]
         )
         middle = (a + b) / 2
         if state == DEAD:

@@ -26,7 +26,9 @@ from solver.tolerances import (
     ARC_CELLS,
     CELL_SWING_COSINE,
     CLEAR_MARGIN,
+    NARROW_JUMP_RAD,
     ROUND_TURN_COSINE,
+    STEEPEST_JUMP,
 )
 
 DEAD: Final = 0
@@ -130,12 +132,13 @@ def needed_nodes(open_cells, needed):
 
 
 @kernel
-def path_state(task, wrist, outer, left, right, beyond, left_margins, right_margins):
+def path_state(task, wrist, width, outer, left, right, beyond, left_margins, right_margins):
     """State of a cell from every constraint in every row.
 
     Args:
         task: the packed task.
         wrist: 0 or 1.
+        width: of the cell [rad].
         outer: turns along the cut-in one cell before the cell's lower end.
         left: the same at its lower end.
         right: the same at its upper end.
@@ -145,7 +148,7 @@ def path_state(task, wrist, outer, left, right, beyond, left_margins, right_marg
 
     Returns:
         The state, and for EXTREME the constraint and row that may have an extremum, or -1 where a
-        joint swings. EDGE where the arm enters its reach: joints have a cusp there.
+        joint swings or may jump. EDGE where the arm enters its reach: joints have a cusp there.
     """
     rows = len(task.retreats)
     for i in range(JUMP):
@@ -196,6 +199,9 @@ def path_state(task, wrist, outer, left, right, beyond, left_margins, right_marg
                 extreme, at_row = i, n
     a, b = left_margins[JUMP], right_margins[JUMP]
     if a < 0.0 and b < 0.0:
+        # The smallest of many rows' margins has corners, so that slopes tell little of it.
+        if width > NARROW_JUMP_RAD and max(a, b) > -STEEPEST_JUMP * width:
+            return EXTREME, -1, 0
         before, after = jump_margin(task, outer, wrist), jump_margin(task, beyond, wrist)
         if peak_above(before, a, b, after) < 0.0:
             return DEAD, -1, 0
