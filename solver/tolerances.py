@@ -389,9 +389,11 @@ NEAREST_FLATTEST: Final = 0.1
 NEAREST_RESTORATIONS: Final = 12
 """Steps at most straight back to the constraints at the end; near them each squares the error."""
 
-NEAREST_BEND_RAD: Final = 0.02
-"""How far from straight the wrist is kept at a row where it jumps [rad]; doubled while it does. At
-5 rad/m of wrist centre travel joint 4 turns 250 rad/m there, which is what counts as a jump."""
+NEAREST_TRIAL_STEPS: Final = 4
+"""Quadratic programmes from one start before it may be left for leading too far."""
+
+NEAREST_HOPELESS: Final = 1.3
+"""A start is left when its next step leads to a displacement this many times the best one found."""
 
 DIAGNOSED_ANGLES: Final = 180
 """Approach angles at which the closest failure is looked for before the best is refined."""
