@@ -389,6 +389,14 @@ NEAREST_FLATTEST: Final = 0.1
 NEAREST_RESTORATIONS: Final = 12
 """Steps at most straight back to the constraints at the end; near them each squares the error."""
 
+NEAREST_JUMP_SHARE: Final = 0.01
+"""Share of the travel that counts as a wrist jump which the nearest displacement leaves unused: the
+feasible arc is then some hundredths of a radian wide, for a few hundredths of a millimetre."""
+
+NEAREST_SPARES_M: Final = (0.0, 1e-4, 3e-4, 1e-3)
+"""Freedom to move that a displaced target is given beyond what it needs, in turn until its arcs
+verify [m]."""
+
 NEAREST_TRIAL_STEPS: Final = 4
 """Quadratic programmes from one start before it may be left for leading too far."""
 

@@ -27,6 +27,7 @@ from solver.tolerances import (
     NEAREST_HOPELESS,
     NEAREST_INSIDE_M,
     NEAREST_INSIDE_RAD,
+    NEAREST_JUMP_SHARE,
     NEAREST_LARGEST_TURN_RAD,
     NEAREST_PENALTY,
     NEAREST_PRUNED,
@@ -147,8 +148,7 @@ def row_constraints(task, turn, retreat, branch, spread, scratch, values, gradie
 def jump_constraint(task, turn, row, joint, branch, scratch, gradient):
     """What is left of the travel that one joint may make from a row to the next one, as a length.
 
-    A hair more is kept where the travel changes fast with the approach angle, so that the feasible
-    arc does not end as a point. Writes the gradient, shape (4,); returns the length [m].
+    Writes the gradient, shape (4,); returns the length [m].
     """
     q, next_q, rates, next_rates = scratch.q, scratch.next_q, scratch.rates, scratch.next_rates
     retreat, after = task.retreats[row], task.retreats[row + 1]
@@ -164,8 +164,8 @@ def jump_constraint(task, turn, row, joint, branch, scratch, gradient):
     sign = 1.0 if travel >= 0 else -1.0
     for k in range(4):
         gradient[k] = -scale * sign * (rates[joint, k] - next_rates[joint, k])
-    hair = NEAREST_INSIDE_RAD * max(1.0, min(abs(gradient[3]) / scale, NEAREST_STEEPEST))
-    return scale * (JOINT_RATE_RAD_M * (retreat - after) - hair - abs(travel))
+    allowed = (1.0 - NEAREST_JUMP_SHARE) * JOINT_RATE_RAD_M * (retreat - after)
+    return scale * (allowed - abs(travel))
 
 
 @kernel
