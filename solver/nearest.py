@@ -14,7 +14,7 @@ from solver.approach.robustness import bears_uncertainty, needed_margin
 from solver.approach.task import ApproachTask
 from solver.robots.model import Array
 from solver.solution import Nearest
-from solver.tolerances import NEAREST_ANGLES, NEAREST_INSIDE_ARC_RAD
+from solver.tolerances import NEAREST_ANGLES, NEAREST_INSIDE_ARC_RAD, NEAREST_SPARES_M
 
 ANGLE = "angle"
 DISPLACEMENT = "displacement"
@@ -42,12 +42,23 @@ def nearest_displacement(task: ApproachTask) -> Nearest | None:
 
     Local minima from several branches and angles, the best estimates first; None when none of them
     is feasible along the whole cut-in. Verified by the arcs of the displaced target: the angle has
-    to lie in one of them.
+    to lie in one of them. One that does not verify gives way to one a little deeper inside.
     """
-    angles, needed = sample_angles(NEAREST_ANGLES), needed_margin(task.target)
+    first: Nearest | None = None
+    for spare in NEAREST_SPARES_M:
+        found = _nearest_with(task, needed_margin(task.target) + spare)
+        if found is not None and found.verified:
+            return found
+        first = first or found
+    return first
+
+
+def _nearest_with(task: ApproachTask, spread: float) -> Nearest | None:
+    """The smallest displacement found after which the target may move by `spread` [m]."""
+    angles = sample_angles(NEAREST_ANGLES)
     offers: list[tuple[float, int, int, Array]] = []
     for side in task.tool_sides:
-        found, branch, x = nearest_of_all(task.for_kernels(side), angles, needed)
+        found, branch, x = nearest_of_all(task.for_kernels(side), angles, spread)
         if found:
             offers.append((float(np.linalg.norm(x[:3])), -side, int(branch), x))
     if not offers:

@@ -405,9 +405,19 @@ NEAREST_FLATTEST: Final = 0.1
 NEAREST_RESTORATIONS: Final = 12
 """Steps at most straight back to the constraints at the end; near them each squares the error."""
 
-NEAREST_BEND_RAD: Final = 0.02
-"""How far from straight the wrist is kept at a row where it jumps [rad]; doubled while it does. At
-5 rad/m of wrist centre travel joint 4 turns 250 rad/m there, which is what counts as a jump."""
+NEAREST_JUMP_SHARE: Final = 0.01
+"""Share of the travel that counts as a wrist jump which the nearest displacement leaves unused: the
+feasible arc is then some hundredths of a radian wide, for a few hundredths of a millimetre."""
+
+NEAREST_SPARES_M: Final = (0.0, 1e-4, 3e-4, 1e-3)
+"""Freedom to move that a displaced target is given beyond what it needs, in turn until its arcs
+verify [m]."""
+
+NEAREST_TRIAL_STEPS: Final = 4
+"""Quadratic programmes from one start before it may be left for leading too far."""
+
+NEAREST_HOPELESS: Final = 1.3
+"""A start is left when its next step leads to a displacement this many times the best one found."""
 
 DIAGNOSED_ANGLES: Final = 180
 """Approach angles at which the closest failure is looked for before the best is refined."""

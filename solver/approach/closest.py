@@ -15,7 +15,7 @@ import numpy as np
 
 from solver.approach.feasibility import limit_margin, posture, thinning, tool_axes, trace
 from solver.compiled import kernel
-from solver.kinematics.spherical_wrist import wrap
+from solver.kinematics.spherical_wrist import arm_turns, wrap
 from solver.tolerances import ANGLE_STEP_RAD, JOINT_RATE_RAD_M
 
 FEASIBLE = 7
@@ -70,6 +70,17 @@ def failure(task, angle, branch, rows):
 
 
 @kernel
+def wrist_reach(task, axes, arm):
+    """The reach margin at the target [m]: what `posture` returns, without the joints."""
+    g = task.geometry
+    cx = task.position[0] - g.tool_length * axes[0, 2]
+    cy = task.position[1] - g.tool_length * axes[1, 2]
+    cz = task.position[2] - g.tool_length * axes[2, 2]
+    _, _, _, _, _, _, _, reach, beside = arm_turns(g, cx, cy, cz, arm // 2)
+    return min(reach, beside)
+
+
+@kernel
 def closer(stage, margin, best_stage, best_margin):
     """Whether a failure is closer to feasible than another."""
     return stage > best_stage or (stage == best_stage and margin > best_margin)
@@ -85,15 +96,21 @@ def closest_failure(task, angles, between):
     Returns:
         Stage, margin, joint, row, branch and angle.
     """
-    rows = np.empty((len(task.retreats), 6))
+    rows, axes = np.empty((len(task.retreats), 6)), np.empty((3, 3))
     best_stage, best_margin, best_joint, best_row = -1, -math.inf, 0, 0
     best_branch, best_angle = 0, 0.0
-    for branch in range(8):
+    for arm in range(4):
         for angle in angles:
-            stage, margin, joint, row = failure(task, angle, branch, rows)
-            if closer(stage, margin, best_stage, best_margin):
-                best_stage, best_margin, best_joint, best_row = stage, margin, joint, row
-                best_branch, best_angle = branch, angle
+            # Both wrists of an arm have its reach: most angles fail there, at little cost.
+            tool_axes(task, angle, axes)
+            reach = wrist_reach(task, axes, arm)
+            if reach < 0 and not closer(0, reach, best_stage, best_margin):
+                continue
+            for branch in range(2 * arm, 2 * arm + 2):
+                stage, margin, joint, row = failure(task, angle, branch, rows)
+                if closer(stage, margin, best_stage, best_margin):
+                    best_stage, best_margin, best_joint, best_row = stage, margin, joint, row
+                    best_branch, best_angle = branch, angle
     if between and best_stage < FEASIBLE:
         step = 2 * math.pi / len(angles)
         low, high = best_angle - step, best_angle + step

@@ -7,29 +7,51 @@ from solver.tolerances import NEAREST_ANGLE_SCALE_M, NEAREST_CONVERGED_M, NEARES
 
 
 @kernel
-def penalty_programme(inverse, slope, values, gradients, count, most, multipliers, step):
+def penalty_programme(
+    inverse, slope, values, gradients, most, multipliers, step, towards, curvature
+):
     """Minimises step' H step / 2 + slope' step + most sum max(0, -(values + gradients step)).
 
     Coordinate ascent in the dual (Hildreth), whose multipliers the penalty keeps below `most`.
+    Between sweeps over all constraints those that push already are swept until they agree.
+
+    Args:
+        inverse: of H, shape (4, 4).
+        slope: shape (4,).
+        values: of the constraints, shape (n,).
+        gradients: theirs, shape (n, 4).
+        most: penalty.
+        multipliers: written, shape (n,).
+        step: written, shape (4,).
+        towards: scratch, shape (n, 4).
+        curvature: scratch, shape (n,).
     """
-    towards, curvature = np.zeros((count, 4)), np.ones(count)
+    count = len(values)
     for i in range(4):
         step[i] = 0.0
         for k in range(4):
             step[i] -= inverse[i, k] * slope[k]
     for j in range(count):
         multipliers[j] = 0.0
-        curvature[j] = 1e-300
-        for i in range(4):
-            for k in range(4):
-                towards[j, i] += inverse[i, k] * gradients[j, k]
-            curvature[j] += gradients[j, i] * towards[j, i]
+        curvature[j] = -1.0
+    everything = True
     for _ in range(NEAREST_QP_SWEEPS):
         largest = 0.0
         for j in range(count):
+            if not everything and multipliers[j] == 0.0:
+                continue
             value = values[j]
             for i in range(4):
                 value += gradients[j, i] * step[i]
+            if multipliers[j] == 0.0 and value >= 0.0:
+                continue
+            if curvature[j] < 0.0:
+                curvature[j] = 1e-300
+                for i in range(4):
+                    towards[j, i] = 0.0
+                    for k in range(4):
+                        towards[j, i] += inverse[i, k] * gradients[j, k]
+                    curvature[j] += gradients[j, i] * towards[j, i]
             changed = min(max(multipliers[j] - value / curvature[j], 0.0), most)
             change = changed - multipliers[j]
             if change != 0.0:
@@ -38,7 +60,11 @@ def penalty_programme(inverse, slope, values, gradients, count, most, multiplier
                 for i in range(4):
                     step[i] += towards[j, i] * change
         if largest <= NEAREST_CONVERGED_M * 1e-3:
-            break
+            if everything:
+                break
+            everything = True
+        else:
+            everything = False
 
 
 @kernel

@@ -138,9 +138,14 @@ def test_few_samples_that_all_fail_are_told_a_feasible_angle(tabletop: Robot) ->
 
 
 def test_a_broken_cut_in_names_its_joint(tabletop: Robot) -> None:
-    """Single angles whose ends are feasible and whose cut-in is not: limits, and jumps."""
+    """Single angles whose ends are feasible and whose cut-in is not, of a long cut-in.
+
+    At the usual 4 cm one in forty thousand is; at 12 cm one in fifteen hundred, for joint 3 turns
+    back where the wrist centre passes the shoulder.
+    """
     rng = np.random.default_rng(76)
-    problem = Problem(tabletop, random_targets(77, 400), options=Options(method="ssas"))
+    options = Options(method="ssas", standoff_m=0.12)
+    problem = Problem(tabletop, random_targets(77, 400), options=options)
     stages = set()
     for target in problem.targets:
         task = approach_task(problem, target, problem.start)

@@ -21,6 +21,7 @@ from solver import (
     verify,
     verify_plan,
 )
+from solver.approach.robustness import path_displacement_margin
 from solver.registry import METHODS
 from solver.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.verification import judge
@@ -126,10 +127,22 @@ def test_another_reference_does_not_verify(plan: Plan) -> None:
 def test_limits_count_with_the_margin_asked_for(plan: Plan) -> None:
     approach = plan.approaches[0]
     assert approach.margin_rad is not None
-    for change, accepted in ((-1e-6, True), (1e-6, False)):
+    assert approach.branch is not None
+    assert approach.path_joints is not None
+    for change, failures in ((-1e-6, []), (1e-6, ["limit_excess_rad"])):
         options = replace(plan.problem.options, limit_margin_rad=approach.margin_rad + change)
         strict = replace(plan.problem, options=options)
-        assert verify(strict, approach, plan.problem.start).accepted is accepted
+        # A target's freedom to move ends at the limits less the margin, so it is claimed anew.
+        freedom = path_displacement_margin(
+            strict.robot, strict.mounted_tool, options, approach.branch, approach.path_joints
+        )
+        assert approach.displacement_margin_m is not None
+        assert 0.0 <= freedom < approach.displacement_margin_m
+        claim = replace(approach, displacement_margin_m=freedom)
+        verification = verify(strict, claim, plan.problem.start)
+        assert [residual.name for residual in verification.failures] == failures
+        stale = [r.name for r in verify(strict, approach, plan.problem.start).failures]
+        assert stale == (failures or ["displacement_margin_claim_m"])
 
 
 def test_a_target_more_uncertain_than_its_posture_bears_does_not_verify(plan: Plan) -> None:
