@@ -10,6 +10,7 @@
 Metres, radians and seconds in the robot's base frame throughout.
 """
 
+from solver.approach.arcs import Arc, feasible_arcs
 from solver.exceptions import (
     Fault,
     InvalidProblem,
@@ -38,6 +39,7 @@ from solver.verification import Residual, Verification, verify, verify_plan
 
 __all__ = [
     "Approach",
+    "Arc",
     "Fault",
     "InvalidProblem",
     "InvalidRobot",
@@ -60,6 +62,7 @@ __all__ = [
     "UnknownRobot",
     "UnsupportedKinematics",
     "Verification",
+    "feasible_arcs",
     "load_robot",
     "parse_robot",
     "robot_from_urdf",

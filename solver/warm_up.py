@@ -27,7 +27,16 @@ def warm_up() -> None:
         problem = Problem(robot, [target])
         if not has_closed_form(robot, problem.mounted_tool):
             continue
-        solve(Problem(robot, [target], options=Options(method="ssas", certify=True)))
+        # What is refused, certified, uncertain or relaxed goes through kernels of its own.
+        outside = (0.0, 0.0, 2 * robot.reach_m(problem.mounted_tool))
+        several = [
+            target,
+            replace(target, id="refused", position_m=outside),
+            replace(target, id="uncertain", position_std_m=1e-5),
+        ]
+        solve(Problem(robot, several, options=Options(method="ssas", certify=True)))
+        relaxed = Options(strike_zone_m=0.01, tilt_tolerance_rad=0.1)
+        solve(Problem(robot, several, options=relaxed))
         # Few targets are ordered by other kernels than many.
         for count in (2, EXACT_TARGETS + 1):
             targets = [replace(target, id=str(k)) for k in range(count)]

@@ -83,6 +83,18 @@ def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
     return robust_arcs(task, arcs)
 
 
+def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
+    """The feasible arcs of every target of a problem by its id, empty where it has none.
+
+    They are those of the task without a strike zone and a tilt tolerance, at `path_points` rows.
+
+    Raises:
+        UnsupportedKinematics: the robot has no closed form.
+    """
+    tasks = (approach_task(problem, target, problem.start) for target in problem.targets)
+    return {task.target.id: task_arcs(task) for task in tasks}
+
+
 def survey_target(problem: Problem, target: Target, reference: Sequence[float]) -> Survey:
     """Effort against approach angle for a target, counted from a reference posture [rad]."""
     task = approach_task(problem, target, reference)
