@@ -114,15 +114,12 @@ def _totals(plan: Mapping[str, Any], units: Sequence[str]) -> str:
     bounds = [a["lower_bound"] for a in plan["approaches"] if "lower_bound" in a]
     proven = f", at least {sum(bounds):.4f} from these starts (proven)" if bounds else ""
     start = ", ".join(map(_joint, plan["start_joints"], units))
-    if len(set(units)) == 1:
-        start = f"({start}){units[0]}"
-    else:
-        start = f"({start}; {', '.join(units)})"
+    start += f"){units[0]}" if len(set(units)) == 1 else f"; {', '.join(units)})"
     unit = {"l1": "rad", "l2": "rad²"}.get(norm, norm)
     return (
         f"{summary['planned']} planned, {summary['infeasible']} infeasible, "
         f"total effort {summary['total_effort']:.4f} {unit} ({norm}){proven}, "
-        f"start at {start}, "
+        f"start at ({start}, "
         f"stand-off {plan['options']['standoff_m'] * 100:g} cm, "
         f"{summary['elapsed_s'] * 1000:.0f} ms"
     )

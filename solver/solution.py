@@ -143,7 +143,7 @@ class Approach:
         displacement_margin_m: how far the target may move, in any direction, until a row of the
             path meets a limit, with its orientation and branch kept; limits less the margin asked
             for, the reach, and the straight wrist.
-        arcs: the feasible arcs of the unrelaxed task, if asked for; none where no angle is feasible.
+        arcs: if asked for, the feasible arcs of the task without relaxations; may be empty.
     """
 
     target_id: str

@@ -10,7 +10,7 @@ from solver.robots.model import Robot
 
 
 def warm_up() -> None:
-    """Solves one small problem by every method, and small batches, for each robot."""
+    """Solves one small problem by every method for each robot, and small batches."""
     from solver import Options, Problem, load_robot, robot_names, solve
     from solver.approach.numerical import numerical_warm_start
     from solver.approach.task import approach_task
@@ -37,12 +37,14 @@ def warm_up() -> None:
         solve(Problem(robot, several, options=Options(method="ssas", certify=True)))
         relaxed = Options(strike_zone_m=0.01, tilt_tolerance_rad=0.1)
         solve(Problem(robot, several, options=relaxed))
-        # Few targets are ordered by other kernels than many.
-        for count in (2, EXACT_TARGETS + 1):
-            targets = [replace(target, id=str(k)) for k in range(count)]
-            solve(Problem(robot, targets, options=Options(method="ssas", order="optimal")))
         # No robot that ships needs the numerical inverse; one brought by somebody may.
         numerical_warm_start(approach_task(problem, target, problem.start))
+
+    # Few targets are ordered by other kernels than many; robots share them.
+    robot = load_robot("tabletop")
+    for count in (2, EXACT_TARGETS + 1):
+        targets = [replace(home_target(robot), id=str(k)) for k in range(count)]
+        solve(Problem(robot, targets, options=Options(method="ssas", order="optimal")))
 
 
 def home_target(robot: Robot) -> Target:

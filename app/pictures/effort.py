@@ -33,8 +33,8 @@ def draw_effort(plan: Mapping[str, Any], problem: Problem) -> Figure:
     figure.supylabel(f"effort [{unit}]")
     figure.suptitle(
         "Effort against approach angle: curves where a branch is feasible in the whole cut-in, "
-        "bars its arcs,\nwith what ends them: a joint (q1 is the first), the reach, a jump of the wrist, "
-        "or uncertainty"
+        "bars its arcs,\nwith what ends them: a joint (q1 is the first), the reach, a jump of the "
+        "wrist, or uncertainty"
     )
     return figure
 
