@@ -18,7 +18,7 @@ from app.demo_request import demo_request
 from app.plan_table import markdown_table, print_plan
 from app.processes import READY_LINE, OwnProcess, ProcessFailed, own_process
 
-START_TIMEOUT_S = 120.0
+START_TIMEOUT_S = 600.0  # the first start compiles every kernel
 EXECUTION_TIMEOUT_S = 180.0
 POLL_S = 0.1
 SIMULATED_ROBOT = "tabletop-sim"
@@ -73,7 +73,7 @@ def _plan_and_execute(data: Path, say: Say) -> tuple[dict[str, Any], dict[str, A
             raise DemoFailed(f"the service said {line!r}")
         url = line.removeprefix(READY_LINE)
         client = running.enter_context(httpx2.Client(base_url=url, timeout=START_TIMEOUT_S))
-        say(f"it listens on {url}; waiting for its solver processes")
+        say(f"it listens on {url}; waiting for its solver processes (the first start compiles)")
         _wait_until(lambda: client.get("/readyz").status_code == 200, "the service to be ready")
         plan = _plan(client, say)
 

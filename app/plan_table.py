@@ -9,16 +9,18 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from hardware.instances import load_instance
+from solver.robots.model import PRISMATIC
+
 HEADINGS: Final = (
     "target",
     "status",
     "angle °",
     "effort",
     "nearest limit °",
+    "may move mm",
     "deviation mm",
-    "time ms",
 )
-TIME_COLUMN: Final = HEADINGS.index("time ms")
 MEASURED_HEADINGS: Final = ("standby error mm", "target error mm")
 
 
@@ -41,28 +43,40 @@ def print_plan(
     plan: Mapping[str, Any], console: Console, execution: Mapping[str, Any] | None = None
 ) -> None:
     """Print the plan, its postures, and a reason for every target refused."""
-    options = plan["options"]
+    options, units = plan["options"], _joint_units(plan)
     title = f"{plan['robot']} with {plan['tool']}: {options['method']}, order {options['order']}"
     console.print(_table(title, _headings(execution), plan_rows(plan, execution)))
     planned = [approach for approach in plan["approaches"] if approach["status"] == "planned"]
     if planned:
-        joints = range(1, len(planned[0]["thinning_joints"]) + 1)
         for name in ("thinning", "standby"):
             rows = [
-                (approach["target_id"], *map(_degrees, approach[f"{name}_joints"]))
+                (approach["target_id"], *map(_joint, approach[f"{name}_joints"], units))
                 for approach in planned
             ]
-            headings = ("target", *(f"joint {i} °" for i in joints))
+            headings = ("target", *(f"joint {i} {unit}" for i, unit in enumerate(units, 1)))
             console.print(_table(f"{name} posture", headings, rows))
     for approach in plan["approaches"]:
         if "reason" in approach:
-            reason = approach["reason"]
-            console.print(
-                f"{approach['target_id']}: {reason['code']}, {reason['detail']}",
-                markup=False,
-                highlight=False,
-            )
-    console.print(_totals(plan), highlight=False)
+            text = f"{approach['target_id']}: {reason_in_words(approach['reason'])}"
+            console.print(text, markup=False, highlight=False)
+    console.print(_totals(plan, units), highlight=False)
+
+
+def reason_in_words(reason: Mapping[str, Any]) -> str:
+    """A reason's code, detail, proof and nearest feasible change."""
+    words = f"{reason['code']}, {reason['detail']}"
+    if "proven" in reason:
+        words += "; proven infeasible" if reason["proven"] else "; not proven infeasible"
+    if (nearest := reason.get("nearest")) is None:
+        return words
+    angle = f"{_degrees(nearest['approach_angle_rad'])}°"
+    if nearest["kind"] == "displacement":
+        along_mm = [value * 1000 for value in nearest["displacement_m"]]
+        by = ", ".join(f"{value:.1f}" for value in along_mm)
+        words += f"; move it {math.hypot(*along_mm):.1f} mm, by ({by}) mm, and {angle} is feasible"
+    else:
+        words += f"; the nearest feasible angle is {angle}"
+    return words if nearest["verified"] else f"{words} (not verified)"
 
 
 def markdown_table(plan: Mapping[str, Any], execution: Mapping[str, Any] | None = None) -> str:
@@ -78,35 +92,51 @@ def _headings(execution: Mapping[str, Any] | None) -> tuple[str, ...]:
 
 def _measured(target: Mapping[str, Any]) -> tuple[str, ...]:
     errors = (target.get("standby_error_m"), target.get("target_error_m"))
-    return tuple("" if error is None else f"{error * 1000:.2f}" for error in errors)
+    return tuple(map(_millimetres, errors))
 
 
 def _row(approach: Mapping[str, Any]) -> tuple[str, ...]:
-    solver = approach["solver"]
     head = (approach["target_id"], approach["status"])
-    time_ms = f"{solver['elapsed_s'] * 1000:.1f}"
     if approach["status"] != "planned":
-        return (*head, "", "", "", "", time_ms)
+        return (*head, *[""] * (len(HEADINGS) - len(head)))
     return (
         *head,
         _degrees(approach["approach_angle_rad"]),
         f"{approach['effort']:.4f}",
         _degrees(approach["margin_rad"]),
+        _millimetres(approach.get("displacement_margin_m")),
         f"{approach['path_deviation_m'] * 1000:.4f}",
-        time_ms,
     )
 
 
-def _totals(plan: Mapping[str, Any]) -> str:
+def _totals(plan: Mapping[str, Any], units: Sequence[str]) -> str:
     summary, norm = plan["summary"], plan["options"]["norm"]
+    bounds = [a["lower_bound"] for a in plan["approaches"] if "lower_bound" in a]
+    proven = f", at least {sum(bounds):.4f} from these starts (proven)" if bounds else ""
+    start = ", ".join(map(_joint, plan["start_joints"], units))
+    start += f"){units[0]}" if len(set(units)) == 1 else f"; {', '.join(units)})"
     unit = {"l1": "rad", "l2": "rad²"}.get(norm, norm)
     return (
         f"{summary['planned']} planned, {summary['infeasible']} infeasible, "
-        f"total effort {summary['total_effort']:.4f} {unit} ({norm}), "
-        f"start at ({', '.join(map(_degrees, plan['start_joints']))})°, "
+        f"total effort {summary['total_effort']:.4f} {unit} ({norm}){proven}, "
+        f"start at ({start}, "
         f"stand-off {plan['options']['standoff_m'] * 100:g} cm, "
         f"{summary['elapsed_s'] * 1000:.0f} ms"
     )
+
+
+def _joint_units(plan: Mapping[str, Any]) -> list[str]:
+    """How each joint is shown: "°", or "mm" for a slide."""
+    joints = load_instance(plan["robot"]).robot.joints
+    return ["mm" if joint.kind == PRISMATIC else "°" for joint in joints]
+
+
+def _joint(value: float, unit: str) -> str:
+    return _degrees(value) if unit == "°" else f"{value * 1000:.2f}"
+
+
+def _millimetres(value_m: float | None) -> str:
+    return "" if value_m is None else f"{value_m * 1000:.2f}"
 
 
 def _degrees(angle_rad: float) -> str:

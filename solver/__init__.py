@@ -10,6 +10,8 @@
 Metres, radians and seconds in the robot's base frame throughout.
 """
 
+from solver.approach.arcs import Arc
+from solver.approach.batch import feasible_arcs
 from solver.exceptions import (
     Fault,
     InvalidProblem,
@@ -39,6 +41,7 @@ from solver.verification import verify, verify_plan
 
 __all__ = [
     "Approach",
+    "Arc",
     "Fault",
     "InvalidProblem",
     "InvalidRobot",
@@ -61,6 +64,7 @@ __all__ = [
     "UnknownRobot",
     "UnsupportedKinematics",
     "Verification",
+    "feasible_arcs",
     "load_robot",
     "parse_robot",
     "robot_from_urdf",

@@ -4,6 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
+from solver.approach.arcs import task_arcs
 from solver.approach.certificate import certify_task, is_infeasible
 from solver.approach.task import ApproachTask, approach_task
 from solver.cut_in import broken_limit, build_cut_in
@@ -80,21 +81,23 @@ def plan_target(
     if stop is None:
         outcome, task = _solve_between_rows_too(task)
     else:
+        # A batch is planned as seen from the start; its efforts and their bounds count from here.
         outcome, task = stop.candidate, replace(stop.task, reference=task.reference)
     elapsed = time.perf_counter() - started
     method = problem.options.method
+    arcs = task_arcs(task) if "arcs" in (problem.options.include or ()) else None
     if isinstance(outcome, Reason):
         if problem.options.certify:
             outcome = replace(outcome, proven=is_infeasible(task))
         report = SolverReport(method, elapsed, 0, outcome.code)
-        return Approach(target.id, INFEASIBLE, report, reason=outcome)
+        return Approach(target.id, INFEASIBLE, report, reason=outcome, arcs=arcs)
     report = SolverReport(method, elapsed, outcome.iterations, outcome.status)
     cut_in = build_cut_in(task, outcome)
     approach = propose(problem, target, outcome, cut_in, reference, report)
     if problem.options.certify:
         bound = certify_task(task, approach.effort).lower_bound
         approach = replace(approach, lower_bound=bound)
-    return judge(problem, approach, reference)
+    return replace(judge(problem, approach, reference), arcs=arcs)
 
 
 def _solve_between_rows_too(task: ApproachTask) -> tuple[Candidate | Reason, ApproachTask]:

@@ -19,7 +19,8 @@ from solver.weights import torque_weights
 ORDERS: Final = ("independent", "given", "optimal")
 NORMS: Final = ("l1", "l2")
 WEIGHTS: Final = ("uniform", "torque")
-INCLUDES: Final = ("path", "transfer", "trajectory")
+FULL_ANSWER: Final = ("path", "transfer", "trajectory")
+INCLUDES: Final = (*FULL_ANSWER, "arcs")
 FULL_ANSWER_TARGETS: Final = 50
 MOST_WEIGHT: Final = 1e6
 
@@ -142,7 +143,7 @@ class Problem:
 def _resolved(options: Options, problem: Problem) -> Options:
     include = options.include
     if include is None:
-        include = INCLUDES if len(problem.targets) <= FULL_ANSWER_TARGETS else ("path",)
+        include = FULL_ANSWER if len(problem.targets) <= FULL_ANSWER_TARGETS else ("path",)
     values: dict[str, Any] = {entry.name: getattr(options, entry.name) for entry in fields(Options)}
     values["include"] = tuple(include)
     if options.joint_weights is not None:
@@ -238,7 +239,7 @@ def _certify_faults(options: Options) -> Iterable[Fault]:
 def _closed_form_faults(problem: "Problem", tool: Tool) -> Iterable[Fault]:
     """What only an arm with a closed form, and not on a rail, can have."""
     options = problem.options
-    asked = [
+    asked: list[tuple[str | int, ...]] = [
         ("options", name)
         for name in ("strike_zone_m", "tilt_tolerance_rad")
         if getattr(options, name) != 0.0
@@ -252,6 +253,8 @@ def _closed_form_faults(problem: "Problem", tool: Tool) -> Iterable[Fault]:
         asked.append(("options", "certify"))
     if options.order == "optimal":
         asked.append(("options", "order"))
+    include = enumerate(options.include or ())
+    asked += [("options", "include", i) for i, part in include if part == "arcs"]
     if not asked and not uncertain:
         return
     try:

@@ -5,10 +5,13 @@ Rows of joint vectors are arrays of shape (rows, joints) [rad]; times in s, leng
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from solver.problem import Problem
 from solver.robots.model import Array
+
+if TYPE_CHECKING:
+    from solver.approach.arcs import Arc
 
 PLANNED: Final = "planned"
 INFEASIBLE: Final = "infeasible"
@@ -120,7 +123,7 @@ class Trajectory:
 class Approach:
     """The answer for one target. Only `solver.verification` makes one that is planned.
 
-    With status "infeasible" only `target_id`, `reason` and `solver` are set.
+    With status "infeasible" only `target_id`, `reason`, `solver` and `arcs` are set.
 
     Attributes:
         approach_angle_rad: angle of the approach direction about the branch, in (-pi, pi].
@@ -140,6 +143,7 @@ class Approach:
         displacement_margin_m: how far the target may move, in any direction, until a row of the
             path meets a limit, with its orientation and branch kept; limits less the margin asked
             for, the reach, and the straight wrist.
+        arcs: if asked for, the feasible arcs of the task without relaxations; may be empty.
     """
 
     target_id: str
@@ -161,6 +165,7 @@ class Approach:
     displacement_margin_m: float | None = None
     transfer: Transfer | None = None
     trajectory: Trajectory | None = None
+    arcs: "tuple[Arc, ...] | None" = None
 
 
 @dataclass(frozen=True)

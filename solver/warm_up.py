@@ -10,7 +10,7 @@ from solver.robots.model import Robot
 
 
 def warm_up() -> None:
-    """Solves one small problem by every method, and small batches, for each robot."""
+    """Solves one small problem by every method for each robot, and small batches."""
     from solver import Options, Problem, load_robot, robot_names, solve
     from solver.approach.numerical import numerical_warm_start
     from solver.approach.task import approach_task
@@ -27,13 +27,24 @@ def warm_up() -> None:
         problem = Problem(robot, [target])
         if not has_closed_form(robot, problem.mounted_tool):
             continue
-        solve(Problem(robot, [target], options=Options(method="ssas", certify=True)))
-        # Few targets are ordered by other kernels than many.
-        for count in (2, EXACT_TARGETS + 1):
-            targets = [replace(target, id=str(k)) for k in range(count)]
-            solve(Problem(robot, targets, options=Options(method="ssas", order="optimal")))
+        # What is refused, certified, uncertain or relaxed goes through kernels of its own.
+        outside = (0.0, 0.0, 2 * robot.reach_m(problem.mounted_tool))
+        several = [
+            target,
+            replace(target, id="refused", position_m=outside),
+            replace(target, id="uncertain", position_std_m=1e-5),
+        ]
+        solve(Problem(robot, several, options=Options(method="ssas", certify=True)))
+        relaxed = Options(strike_zone_m=0.01, tilt_tolerance_rad=0.1)
+        solve(Problem(robot, several, options=relaxed))
         # No robot that ships needs the numerical inverse; one brought by somebody may.
         numerical_warm_start(approach_task(problem, target, problem.start))
+
+    # Few targets are ordered by other kernels than many; robots share them.
+    robot = load_robot("tabletop")
+    for count in (2, EXACT_TARGETS + 1):
+        targets = [replace(home_target(robot), id=str(k)) for k in range(count)]
+        solve(Problem(robot, targets, options=Options(method="ssas", order="optimal")))
 
 
 def home_target(robot: Robot) -> Target:

@@ -9,11 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from app.pictures.references import planned_with_references
-from solver import Problem
+from solver import Arc, Problem
 from solver.approach.arcs import Survey, survey_target
+from solver.robots.model import Robot
 
 CHOSEN_COLOUR = "#e0457b"
 BORDER_DEG = 20.0
+# In shares of the range of efforts, below the least effort.
+BARS_BELOW, BAR_STEP = 0.10, 0.08
 
 
 def draw_effort(plan: Mapping[str, Any], problem: Problem) -> Figure:
@@ -23,14 +26,15 @@ def draw_effort(plan: Mapping[str, Any], problem: Problem) -> Figure:
     figure = Figure(figsize=(11, 1.2 + 2.1 * max(len(steps), 1)), layout="constrained")
     panels = figure.subplots(max(len(steps), 1), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (approach, _, _), survey in zip(panels, steps, surveys, strict=False):
-        _draw_panel(axes, approach, survey)
+        _draw_panel(axes, approach, survey, problem.robot)
     unit = "rad" if plan["options"]["norm"] == "l1" else "rad²"
     panels[-1].set_xlabel("approach angle about the branch [°]")
     panels[-1].set_xlim(*_angle_range(surveys))
     figure.supylabel(f"effort [{unit}]")
     figure.suptitle(
         "Effort against approach angle: curves where a branch is feasible in the whole cut-in, "
-        "bars its arcs"
+        "bars its arcs,\nwith what ends them: a joint (q1 is the first), the reach, a jump of the "
+        "wrist, or uncertainty"
     )
     return figure
 
@@ -45,7 +49,7 @@ def _angle_range(surveys: list[Survey]) -> tuple[float, float]:
     return max(low, -180.0), min(high, 180.0)
 
 
-def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey) -> None:
+def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey, robot: Robot) -> None:
     feasible = [row for row in range(len(survey.curves)) if np.isfinite(survey.efforts[row]).any()]
     palette = matplotlib.colormaps["tab10"]
     degrees = np.degrees(survey.angles_rad)
@@ -60,17 +64,8 @@ def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey) -> None
         for arc in survey.arcs:
             if (arc.tool_side, arc.branch) != (side, branch):
                 continue
-            start, end = np.degrees((arc.lower_rad, arc.upper_rad))
-            # An arc across the half turn is drawn at both ends of the axis.
-            for turn in (0, -360):
-                height = low - span * (0.10 + 0.035 * feasible.index(row))
-                axes.plot(
-                    (start + turn, end + turn),
-                    (height, height),
-                    color=colour,
-                    linewidth=4,
-                    solid_capstyle="butt",
-                )
+            height = low - span * (BARS_BELOW + BAR_STEP * feasible.index(row))
+            _draw_arc(axes, arc, height, colour, robot)
     angle = np.degrees(approach["approach_angle_rad"])
     axes.plot(angle, approach["effort"], "o", color=CHOSEN_COLOUR, markersize=9, zorder=5)
     axes.annotate(
@@ -85,3 +80,33 @@ def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey) -> None
     axes.grid(alpha=0.25)
     axes.legend(loc="upper left", fontsize=8, ncols=2)
     axes.margins(y=0.12)
+
+
+def _draw_arc(axes: Axes, arc: Arc, height: float, colour: Any, robot: Robot) -> None:
+    """A bar over the arc's angles; one across the half turn is drawn at both ends of the axis."""
+    start, end = np.degrees((arc.lower_rad, arc.upper_rad))
+    for turn in (0, -360):
+        at = (start + turn, end + turn)
+        axes.plot(at, (height, height), color=colour, linewidth=4, solid_capstyle="butt")
+        for angle, limit, side in (
+            (at[0], arc.lower_limit, "right"),
+            (at[1], arc.upper_limit, "left"),
+        ):
+            axes.annotate(
+                _short(limit, robot),
+                (angle, height),
+                textcoords="offset points",
+                xytext=(3 if side == "left" else -3, 0),
+                ha=side,
+                va="center_baseline",
+                color=colour,
+                fontsize=7,
+                annotation_clip=True,
+            )
+
+
+def _short(limit: str | None, robot: Robot) -> str:
+    """What ends an arc, in a word: a joint by its number."""
+    if limit in robot.joint_names:
+        return f"q{robot.joint_names.index(limit) + 1}"
+    return {None: "", "wrist_jump": "jump"}.get(limit, limit or "")

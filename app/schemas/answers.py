@@ -86,6 +86,20 @@ class TrajectoryAnswer(BaseModel):
     segments: list[SegmentAnswer]
 
 
+class ArcAnswer(BaseModel):
+    """Approach angles at which one branch is feasible in the whole cut-in.
+
+    What ends an arc: a joint's name, reach, wrist_jump or uncertainty; absent for the whole turn.
+    """
+
+    tool_side: int
+    branch: int
+    lower_rad: float
+    upper_rad: float = Field(description="beyond pi where the arc crosses the half turn")
+    lower_limit: str | MISSING = MISSING
+    upper_limit: str | MISSING = MISSING
+
+
 class ApproachAnswer(BaseModel):
     """The answer for one target: planned, or infeasible with a reason."""
 
@@ -120,6 +134,9 @@ class ApproachAnswer(BaseModel):
     transfer: TransferAnswer | MISSING = MISSING
     trajectory: TrajectoryAnswer | MISSING = MISSING
     reason: ReasonAnswer | MISSING = MISSING
+    arcs: list[ArcAnswer] | MISSING = Field(
+        default=MISSING, description="if included: every feasible arc, without the relaxations"
+    )
 
 
 class SummaryAnswer(BaseModel):

@@ -71,7 +71,8 @@ class OptionsBody(StrictBody):
     )
     include: Annotated[list[str], Field(fail_fast=True)] | MISSING = Field(
         default=MISSING,
-        description="any of path, transfer, trajectory; default: all up to 50 targets, then path",
+        description="any of path, transfer, trajectory, arcs; default: the first three up to 50 "
+        "targets, then path",
     )
 
 

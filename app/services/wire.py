@@ -16,6 +16,7 @@ from app.version import prunus_version
 from hardware.instances import load_instance
 from solver import (
     Approach,
+    Arc,
     Fault,
     InvalidProblem,
     Nearest,
@@ -119,6 +120,7 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
     path = approach.path_joints if "path" in include else None
     transfer = approach.transfer if "transfer" in include else None
     trajectory = approach.trajectory if "trajectory" in include else None
+    arcs = approach.arcs if "arcs" in include else None
     solver = approach.solver
     return present(
         target_id=approach.target_id,
@@ -145,6 +147,18 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
         transfer=None if transfer is None else _transfer(transfer),
         trajectory=None if trajectory is None else _trajectory(trajectory),
         reason=None if approach.reason is None else _reason(approach.reason),
+        arcs=None if arcs is None else [_arc(arc) for arc in arcs],
+    )
+
+
+def _arc(arc: Arc) -> dict[str, Any]:
+    return present(
+        tool_side=int(arc.tool_side),
+        branch=int(arc.branch),
+        lower_rad=_number(arc.lower_rad),
+        upper_rad=_number(arc.upper_rad),
+        lower_limit=arc.lower_limit,
+        upper_limit=arc.upper_limit,
     )
 
 

@@ -69,7 +69,13 @@ def closed_form_optima(
 
 
 def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
-    """The feasible arcs of every target of a problem, by target id; those of `task_arcs`."""
+    """The feasible arcs of every target of a problem by its id, empty where it has none.
+
+    They are those of the task without a strike zone and a tilt tolerance, at `path_points` rows.
+
+    Raises:
+        UnsupportedKinematics: the robot has no closed form.
+    """
     targets, options = problem.targets, problem.options
     positions = np.array([target.position_m for target in targets], dtype=np.float64)
     directions = np.array([target.branch_direction for target in targets], dtype=np.float64)

@@ -19,7 +19,7 @@ REPOSITORY = Path(__file__).parents[2]
 EXAMPLE = REPOSITORY / "openapi" / "examples" / "data_set_3.json"
 ANNOUNCEMENT = "Prunus listens on "
 START_S = 60
-READY_S = 120
+READY_S = 600  # the first start compiles every kernel
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,7 @@ FAULTS: dict[str, tuple[tuple[str | int, ...], Any, str]] = {
     "joint weights short": (("options", "joint_weights"), [1.0], "#/options/joint_weights"),
     "joint weights negative": (
         ("options", "joint_weights"), [-1, 1, 1, 1, 1, 1], "#/options/joint_weights"),
+    "arcs and nonsense": (("options", "include"), ["arcs", MARKER], "#/options/include/1"),
     "frame": (("frame",), MARKER, "#/frame"),
     "scene": (("scene",), {}, "#/scene"),
     "scene with branches": (
@@ -168,6 +169,15 @@ def test_all_faults_at_once(server: Server, request_body: Body) -> None:
     problem = assert_problem(server.client.post("/v1/plans", json=request_body), 422)
     pointers = {error["pointer"] for error in problem["errors"]}
     assert pointers == {"#/tool", "#/frame", "#/options/norm"}
+
+
+def test_what_needs_a_closed_form_is_refused_on_a_rail(server: Server) -> None:
+    target = {"id": "1", "position_m": [0.5, 0.1, 0.4], "branch_direction": [0, 1, 0]}
+    body = {"robot": "puma560_rail", "targets": [target]}
+    body["options"] = {"include": ["path", "arcs"], "certify": True}
+    problem = assert_problem(server.client.post("/v1/plans", json=body), 422)
+    pointers = {error["pointer"] for error in problem["errors"]}
+    assert pointers == {"#/options/include/1", "#/options/certify"}
 
 
 def test_number_of_errors_is_bounded(server: Server, request_body: Body) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
-from solver import Options, Problem, Target, load_robot, solve
+from solver import Options, Problem, Target, feasible_arcs, load_robot, solve
 from tests.app.conftest import EXAMPLE, REPOSITORY, Server, running_server
 
 Body = dict[str, Any]
@@ -81,16 +81,40 @@ def test_unreachable_target_is_an_answer(server: Server, request_body: Body) -> 
     assert not has_null(plan)
 
 
-@pytest.mark.parametrize("include", [[], ["path"], ["transfer"], ["trajectory"]])
+@pytest.mark.parametrize("include", [[], ["path"], ["transfer"], ["trajectory"], ["arcs"]])
 def test_include_decides_what_is_sent(
     include: list[str], server: Server, request_body: Body
 ) -> None:
     request_body["options"]["include"] = include
     plan = post(server, request_body)
     assert plan["options"]["include"] == include
-    fields = {"path": "path_joints", "transfer": "transfer", "trajectory": "trajectory"}
+    fields = {"path": "path_joints", **{name: name for name in ("transfer", "trajectory", "arcs")}}
     for approach in plan["approaches"]:
         assert {name for name, field in fields.items() if field in approach} == set(include)
+
+
+def test_arcs_tell_where_each_branch_is_feasible(request_body: Body) -> None:
+    request_body["targets"].insert(2, OUT_OF_REACH)
+    request_body["options"] = {"include": ["arcs"]}
+    problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
+    plan = plan_to_wire(solve(problem), "0")
+    assert not has_null(plan)
+    of_problem = feasible_arcs(problem)
+    for approach in plan["approaches"]:
+        arcs = approach["arcs"]
+        assert [(arc["lower_rad"], arc["upper_rad"]) for arc in arcs] == [
+            (arc.lower_rad, arc.upper_rad) for arc in of_problem[approach["target_id"]]
+        ]
+        ends = {*problem.robot.joint_names, "reach", "wrist_jump"}
+        assert all({arc["lower_limit"], arc["upper_limit"]} <= ends for arc in arcs)
+        if approach["status"] == "infeasible":
+            assert arcs == []
+            continue
+        assert any(
+            (arc["tool_side"], arc["branch"]) == (approach["tool_side"], approach["branch"])
+            and arc["lower_rad"] <= approach["approach_angle_rad"] <= arc["upper_rad"]
+            for arc in arcs
+        )
 
 
 def test_plan_is_read_again(server: Server, request_body: Body) -> None:
@@ -157,11 +181,17 @@ def test_bounds_and_proofs_are_told(request_body: Body) -> None:
     request_body["targets"].append(
         {"id": "far", "position_m": [0.9, 0.0, 0.3], "branch_direction": [0, 1, 0]}
     )
-    for certify in (True, False):
-        request_body["options"] = {"method": "ssas", "certify": certify}
+    # In a batch a bound counts from where the approach before it has left the arm.
+    for certify, order in (
+        (True, "independent"),
+        (True, "given"),
+        (True, "optimal"),
+        (False, "given"),
+    ):
+        request_body["options"] = {"method": "ssas", "certify": certify, "order": order}
         problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
         *planned, far = plan_to_wire(solve(problem), "0")["approaches"]
-        assert planned
+        assert [approach["status"] for approach in planned] == ["planned"] * 5
         assert all(("lower_bound" in approach) is certify for approach in planned)
         assert far["reason"].get("proven") is (True if certify else None)
 
