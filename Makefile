@@ -16,7 +16,8 @@ test: $(VENV)/dev.stamp          ## set up, then every check and every test
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest
+	$(BIN)/pytest -n 2 tests/solver tests/bench
+	$(BIN)/pytest tests --ignore=tests/solver --ignore=tests/bench
 
 serve: $(VENV)/run.stamp         ## the service, on loopback
 	@$(BIN)/prunus serve
