@@ -21,6 +21,7 @@ from solver.tolerances import (
     EVEN_ROWS_M,
     EXCHANGE_DENSITY,
     EXCHANGE_ZOOMS,
+    LEAST_REFINED_ROWS,
     LIMIT_EXCESS_RAD,
     TRAJECTORY_HALVINGS,
     TRAJECTORY_STEP_S,
@@ -35,12 +36,14 @@ class CutIn:
     Attributes:
         path_joints: evenly spaced rows, shape (path_points, 6) [rad].
         motion: what is executed; None where no timing was asked for.
-        deviation_m: how far that motion leaves the straight line, between its rows too; without
-            timing, that of rows refined until they are straight [m].
+        rows: the postures that motion goes through, or without timing rows refined until they are
+            straight, shape (n, joints).
+        deviation_m: how far they leave the straight line, in between too [m].
     """
 
     path_joints: Array
     motion: TimedRows | None
+    rows: Array
     deviation_m: float
 
 
@@ -58,10 +61,10 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
     pose = forward_kinematics(task.robot, task.tool, rows[-1])
     if not options.timed:
         line = (pose[:3, 3], pose[:3, 2])
-        deviation = refined_deviation(
+        refined, deviation = refined_rows(
             task.robot, task.tool, options, rows[-1], candidate.branch, line
         )
-        return CutIn(rows, None, deviation)
+        return CutIn(rows, None, refined, deviation)
     step_s = TRAJECTORY_STEP_S
     for _ in range(TRAJECTORY_HALVINGS + 1):
         motion = time_cut_in(task.robot, options.standoff_m, rows, path, step_s)
@@ -69,7 +72,7 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
         if deviation <= options.straightness_m:
             break
         step_s /= 2
-    return CutIn(rows, motion, deviation)
+    return CutIn(rows, motion, motion.joints, deviation)
 
 
 def retreat_rows(
@@ -106,15 +109,15 @@ def retreat_rows(
     return rows
 
 
-def refined_deviation(
+def refined_rows(
     robot: Robot,
     tool: Tool,
     options: Options,
     thinning: Array,
     branch: int | None,
     line: tuple[Array, Array],
-) -> float:
-    """Deviation from the line of rows that are refined until they are straight [m].
+) -> tuple[Array, float]:
+    """Rows of the cut-in, refined until they are straight, and their deviation from the line [m].
 
     Args:
         robot: the arm.
@@ -124,7 +127,8 @@ def refined_deviation(
         branch: its branch; None without a closed form.
         line: a point of the line, shape (3,) [m], and its unit direction, shape (3,).
     """
-    count, deviation = options.path_points, np.inf
+    count = max(options.path_points, LEAST_REFINED_ROWS)
+    rows, deviation = np.empty((0, len(robot.joints))), np.inf
     for _ in range(TRAJECTORY_HALVINGS + 1):
         retreats = np.linspace(options.standoff_m, 0.0, count)
         rows = retreat_rows(robot, tool, thinning, branch, retreats)
@@ -132,7 +136,7 @@ def refined_deviation(
         if deviation <= options.straightness_m:
             break
         count = 2 * count - 1
-    return float(deviation)
+    return rows, float(deviation)
 
 
 def line_deviation(robot: Robot, tool: Tool, rows: Array, point: Array, direction: Array) -> float:

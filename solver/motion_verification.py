@@ -102,16 +102,12 @@ def motion_residuals(
         yield Residual(f"{name}_deviation_claim_m", claimed, POSITION_ERROR_M)
 
 
-def cut_in_margin(problem: Problem, path_joints: Array, trajectory: Trajectory | None) -> float:
-    """Smallest distance of a revolute joint to its limit, also as executed if timed [rad].
+def cut_in_margin(problem: Problem, path_joints: Array, rows: Array) -> float:
+    """Smallest distance of a revolute joint to its limit, in the path and in finer rows [rad].
 
-    Prismatic joints have no margin in an angle; `limit_excess` covers them.
+    Prismatic joints have no margin in an angle; `path_limit_excess_rad` covers them.
     """
-    rows = path_joints
-    if trajectory is not None:
-        executed = segment_rows(trajectory, "cut_in", "dwell", "retreat")[1]
-        rows = np.concatenate((path_joints, executed))
-    return float(problem.robot.limit_margin(rows).min())
+    return float(problem.robot.limit_margin(np.concatenate((path_joints, rows))).min())
 
 
 def segment_rows(trajectory: Trajectory, first: str, *others: str) -> tuple[Array, Array]:

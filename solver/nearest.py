@@ -12,6 +12,8 @@ from solver.approach.frame import signed_angle
 from solver.approach.nearest import nearest_of_all
 from solver.approach.robustness import bears_uncertainty, needed_margin
 from solver.approach.task import ApproachTask
+from solver.cut_in import broken_limit
+from solver.methods.candidate import Candidate
 from solver.robots.model import Array
 from solver.solution import Nearest
 from solver.tolerances import NEAREST_ANGLES, NEAREST_INSIDE_ARC_RAD, NEAREST_SPARES_M
@@ -40,17 +42,15 @@ def nearest_angle(task: ApproachTask, tried: Array, arcs: Sequence[Arc]) -> Near
 def nearest_displacement(task: ApproachTask) -> Nearest | None:
     """The smallest displacement found that makes the target feasible, the branch direction kept.
 
-    Local minima from several branches and angles, the best estimates first; None when none of them
-    is feasible along the whole cut-in. Verified by the arcs of the displaced target: the angle has
-    to lie in one of them. One that does not verify gives way to one a little deeper inside.
+    Local minima from several branches and angles, the best estimates first. Verified by the arcs of
+    the displaced target, in one of which the angle has to lie, and by its cut-in between the rows.
+    One that does not verify gives way to one a little deeper inside; None when none does.
     """
-    first: Nearest | None = None
     for spare in NEAREST_SPARES_M:
         found = _nearest_with(task, needed_margin(task.target) + spare)
         if found is not None and found.verified:
             return found
-        first = first or found
-    return first
+    return None
 
 
 def _nearest_with(task: ApproachTask, spread: float) -> Nearest | None:
@@ -72,8 +72,13 @@ def _nearest_with(task: ApproachTask, spread: float) -> Nearest | None:
         (arc.tool_side, arc.branch) == (-negative_side, branch)
         and (angle - arc.lower_rad) % (2 * np.pi) <= arc.upper_rad - arc.lower_rad
         for arc in task_arcs(moved)
-    )
+    ) and _holds_between_rows(moved, angle, -negative_side, branch)
     return Nearest(DISPLACEMENT, signed_angle(angle), (x_m, y_m, z_m), verified)
+
+
+def _holds_between_rows(task: ApproachTask, angle: float, tool_side: int, branch: int) -> bool:
+    thinning = task.thinning_joints(angle, tool_side, branch)
+    return broken_limit(task, Candidate(angle, tool_side, branch, thinning, 0.0, 0, "")) is None
 
 
 def displaced(task: ApproachTask, displacement: tuple[float, float, float]) -> ApproachTask:

@@ -1,7 +1,7 @@
 """From a problem to a verified plan, one target after the other."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from solver.approach.arcs import task_arcs
@@ -29,27 +29,55 @@ def solve(problem: Problem) -> Plan:
     target to target.
     """
     started = time.perf_counter()
-    targets: Sequence[Target] = problem.targets
-    stops: dict[str, Stop] = {}
-    if problem.options.order == "optimal" or _as_one(problem):
-        chain = sequence(problem)
-        if problem.options.method == "ncos" and _as_one(problem):
-            chain = programmed(problem, chain)
-        stops = {stop.task.target.id: stop for stop in chain}
+    approaches = _as_asked(problem)
     if problem.options.order == "optimal":
-        by_id = {target.id: target for target in targets}
-        left_out = [target for target in targets if target.id not in stops]
-        targets = [*(by_id[name] for name in stops), *left_out]
+        approaches = sorted(approaches, key=lambda approach: approach.status != PLANNED)
+    return Plan(problem, tuple(approaches), time.perf_counter() - started)
+
+
+def _as_asked(problem: Problem) -> Sequence[Approach]:
+    targets = problem.targets
+    optimal = problem.options.order == "optimal"
+    if not (optimal or _as_one(problem)):
+        return _chain(problem, targets, {})
+    stops = sequence(problem)
+    if _as_one(problem):
+        if problem.options.method == "ncos":
+            stops = programmed(problem, stops)
+        by_id = {stop.task.target.id: stop for stop in stops}
+        return _chain(problem, _ordered(targets, stops) if optimal else targets, by_id)
+    # The order is good for approaches chosen together; going greedily it need not be.
+    offers = [_chain(problem, targets, {}), _chain(problem, _ordered(targets, stops), {})]
+    return min(offers, key=_refused_and_effort)
+
+
+def _ordered(targets: Sequence[Target], stops: Sequence[Stop]) -> list[Target]:
+    """The targets of the stops in their order, then the others."""
+    chosen = {stop.task.target.id for stop in stops}
+    return [
+        *(stop.task.target for stop in stops),
+        *(target for target in targets if target.id not in chosen),
+    ]
+
+
+def _refused_and_effort(approaches: Sequence[Approach]) -> tuple[int, float]:
+    efforts = [approach.effort or 0.0 for approach in approaches]
+    return sum(approach.status != PLANNED for approach in approaches), sum(efforts)
+
+
+def _chain(
+    problem: Problem, targets: Sequence[Target], stops: Mapping[str, Stop]
+) -> list[Approach]:
+    """Approaches to targets in order, each its stop's if it has one."""
     reference = problem.start
     approaches: list[Approach] = []
     for target in targets:
-        stop = stops.get(target.id) if _as_one(problem) else None
-        approach = plan_target(problem, target, reference, stop)
+        approach = plan_target(problem, target, reference, stops.get(target.id))
         approaches.append(approach)
         chained = problem.options.order != "independent" and approach.status == PLANNED
         if chained and approach.standby_joints is not None:
             reference = tuple(float(value) for value in approach.standby_joints)
-    return Plan(problem, _planned_first(problem, approaches), time.perf_counter() - started)
+    return approaches
 
 
 def _as_one(problem: Problem) -> bool:
@@ -62,13 +90,6 @@ def _as_one(problem: Problem) -> bool:
         and has_closed_form(problem.robot, problem.mounted_tool)
         and not (options.method == "ncos" and relaxed)
     )
-
-
-def _planned_first(problem: Problem, approaches: Sequence[Approach]) -> tuple[Approach, ...]:
-    """Infeasible targets keep their place when the order is given and come last when chosen."""
-    if problem.options.order != "optimal":
-        return tuple(approaches)
-    return tuple(sorted(approaches, key=lambda approach: approach.status != PLANNED))
 
 
 def plan_target(

@@ -54,7 +54,7 @@ def propose(
         path_joints=cut_in.path_joints,
         path_deviation_m=cut_in.deviation_m,
         effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
-        margin_rad=cut_in_margin(problem, cut_in.path_joints, trajectory),
+        margin_rad=cut_in_margin(problem, cut_in.path_joints, cut_in.rows),
         displacement_margin_m=_displacement_margin(problem, candidate, cut_in),
         transfer=transfer,
         trajectory=trajectory,

@@ -15,7 +15,7 @@ from solver.cut_in import build_cut_in
 from solver.exceptions import RetimingFailed
 from solver.kinematics.families import has_branches
 from solver.methods.candidate import Candidate
-from solver.problem import INCLUDES, Problem, Target
+from solver.problem import Problem, Target
 from solver.proposal import propose
 from solver.robots.model import Array
 from solver.solution import PLANNED, Approach, SolverReport
@@ -23,6 +23,7 @@ from solver.tolerances import SAME_POSTURE_RAD
 from solver.verification import judge
 
 BRANCHES = range(8)
+MOTION = ("path", "transfer", "trajectory")
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ def retime(problem: Problem, chosen: Sequence[ChosenApproach]) -> tuple[Approach
         RetimingFailed: one does not verify, or has other postures than it had.
     """
     # Whatever the plan's answer left out, what moves is timed.
-    problem = replace(problem, options=replace(problem.options, include=INCLUDES))
+    problem = replace(problem, options=replace(problem.options, include=MOTION))
     targets = {target.id: target for target in problem.targets}
     reference: Sequence[float] = problem.start
     approaches: list[Approach] = []

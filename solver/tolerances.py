@@ -99,6 +99,9 @@ JOINT_RATE_RAD_M: Final = 250.0
 """Joint travel for tool travel in the cut-in above which it counts as a wrist jump [rad/m]: 14
 degrees of joint for each millimetre; at 2 rad/s the tool would creep at 8 mm/s."""
 
+LEAST_REFINED_ROWS: Final = 20
+"""Rows from which a cut-in without timing is refined: T's number."""
+
 EXCHANGE_ROUNDS: Final = 8
 """How often a cut-in posture that breaks a limit between two rows is added to the rows and the
 target solved again. One or two are usual: the posture moves quadratically little."""
@@ -470,10 +473,6 @@ ANNEAL_HOT: Final = 0.3
 
 ANNEAL_COLD: Final = 0.005
 """Temperature at its end."""
-
-ANNEAL_HOPELESS: Final = 0.5
-"""A move that is dearer by so much before approaches are chosen anew is not looked at further, in
-efforts of a target on average."""
 
 ANNEAL_WINDOW: Final = 3
 """Places on each side of a change whose approaches are chosen anew."""

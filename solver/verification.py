@@ -14,12 +14,18 @@ from solver.approach.frame import approach_frame
 from solver.approach.numerical import same_side
 from solver.approach.relaxation import Placement, placement, rotation, shortened
 from solver.approach.robustness import needed_margin, path_displacement_margin
-from solver.cut_in import refined_deviation
+from solver.cut_in import refined_rows
 from solver.effort import posture_effort
 from solver.kinematics.families import has_branches, rail_of
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES, inverse_kinematics
-from solver.motion_verification import Motion, cut_in_margin, motion_residuals, shape_residuals
+from solver.motion_verification import (
+    Motion,
+    cut_in_margin,
+    motion_residuals,
+    segment_rows,
+    shape_residuals,
+)
 from solver.problem import Problem, Target
 from solver.residual import Residual, Verification
 from solver.robots.model import Array
@@ -30,6 +36,7 @@ from solver.tolerances import (
     JOINT_RATE_RAD_M,
     LIMIT_EXCESS_RAD,
     POSITION_ERROR_M,
+    RATE_EXCESS_RELATIVE,
     SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
@@ -55,7 +62,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         _shape_residuals(problem, claim),
         _path_residuals(problem, target, claim),
         _relaxation_residuals(problem, target, approach, claim),
-        _number_residuals(problem, claim, reference),
+        _number_residuals(problem, target, claim, reference),
         _displacement_residuals(problem, target, claim),
         _timing_residuals(problem, target, claim, reference),
     )
@@ -200,7 +207,7 @@ def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator
         yield Residual(f"{name}_is_path_end_rad", difference, SAME_POSTURE_RAD)
     spacing = options.standoff_m / (options.path_points - 1)
     rate = float(np.abs(np.diff(rows, axis=0)).max()) / spacing
-    yield Residual("wrist_jump_rad_m", rate, JOINT_RATE_RAD_M)
+    yield Residual("wrist_jump_rad_m", rate, JOINT_RATE_RAD_M * (1 + RATE_EXCESS_RELATIVE))
     yield from _branch_residuals(problem, claim, poses)
 
 
@@ -224,7 +231,7 @@ def _branch_residuals(problem: Problem, claim: _Claim, poses: Array) -> Iterator
 
 
 def _number_residuals(
-    problem: Problem, claim: _Claim, reference: Sequence[float]
+    problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
 ) -> Iterator[Residual]:
     effort = posture_effort(
         claim.thinning_joints, reference, problem.joint_weights, problem.options.norm
@@ -234,7 +241,14 @@ def _number_residuals(
     if claim.lower_bound is not None:
         above = (claim.lower_bound - effort) / max(1.0, effort)
         yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
-    margin = cut_in_margin(problem, claim.path_joints, claim.trajectory)
+    if claim.trajectory is None:
+        finer, deviation = _refined(problem, target, claim)
+        yield Residual("path_deviation_m", deviation, problem.options.straightness_m)
+        claimed = deviation - claim.path_deviation_m
+        yield Residual("path_deviation_claim_m", claimed, POSITION_ERROR_M)
+    else:
+        finer = segment_rows(claim.trajectory, "cut_in", "dwell", "retreat")[1]
+    margin = cut_in_margin(problem, claim.path_joints, finer)
     yield Residual("margin_claim_rad", abs(margin - claim.margin_rad), SAME_POSTURE_RAD)
     rows = np.asarray(claim.path_joints)
     outside = np.maximum(problem.robot.lower - rows, rows - problem.robot.upper)
@@ -256,24 +270,24 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
     yield Residual("uncertainty_excess_m", needed_margin(target) - margin, POSITION_ERROR_M)
 
 
+def _refined(problem: Problem, target: Target, claim: _Claim) -> tuple[Array, float]:
+    place, axes = _wanted_pose(problem, target, claim)
+    return refined_rows(
+        problem.robot,
+        problem.mounted_tool,
+        problem.options,
+        claim.path_joints[-1],
+        claim.branch,
+        (place, axes[:, 2]),
+    )
+
+
 def _timing_residuals(
     problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
 ) -> Iterator[Residual]:
-    place, axes = _wanted_pose(problem, target, claim)
     if claim.trajectory is None or claim.transfer is None:
-        deviation = refined_deviation(
-            problem.robot,
-            problem.mounted_tool,
-            problem.options,
-            claim.path_joints[-1],
-            claim.branch,
-            (place, axes[:, 2]),
-        )
-        yield Residual("path_deviation_m", deviation, problem.options.straightness_m)
-        yield Residual(
-            "path_deviation_claim_m", deviation - claim.path_deviation_m, POSITION_ERROR_M
-        )
         return
+    place, axes = _wanted_pose(problem, target, claim)
     motion = Motion(np.asarray(reference), claim.transfer, claim.trajectory)
     yield from motion_residuals(
         problem, motion, claim.path_joints, (place, axes[:, 2]), claim.path_deviation_m

@@ -98,7 +98,8 @@ class ApproachTask:
 
     def thinning_joints(self, angle: float, tool_side: int, branch: int) -> tuple[float, ...]:
         """The closed-form posture at the target [rad]."""
-        row = self.postures(angle, tool_side, branch, np.zeros(1))[-1]
+        # With its whole cut-in, which decides the turn of joints that can turn further than once.
+        row = self.postures(angle, tool_side, branch, np.asarray(self.retreats_m))[-1]
         return tuple(float(value) for value in row)
 
     def with_retreat(self, retreat: float) -> "ApproachTask":

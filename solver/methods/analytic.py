@@ -7,9 +7,9 @@ coordinate: not the cheapest approach but the one that may err most in its angle
 from solver.approach.arcs import task_arcs
 from solver.approach.frame import signed_angle
 from solver.approach.task import ApproachTask
+from solver.diagnosis import diagnose
 from solver.effort import posture_effort
 from solver.methods.candidate import Candidate
-from solver.methods.semi_analytic import why_none
 from solver.solution import Reason
 
 
@@ -17,7 +17,7 @@ def solve_as(task: ApproachTask) -> Candidate | Reason:
     """The middle of the widest arc; ties go to tool side 1, then to the lower branch number."""
     arcs = task_arcs(task)
     if not arcs:
-        return why_none(task)
+        return diagnose(task)
     widest = max(arcs, key=lambda arc: (arc.upper_rad - arc.lower_rad, arc.tool_side, -arc.branch))
     middle = (widest.lower_rad + widest.upper_rad) / 2
     thinning = task.thinning_joints(middle, widest.tool_side, widest.branch)

@@ -12,13 +12,14 @@ from solver.approach.frame import signed_angle
 from solver.approach.relaxation import placement
 from solver.approach.task import ApproachTask
 from solver.cut_in import retreat_rows
+from solver.diagnosis import diagnose
 from solver.effort import posture_effort
 from solver.kinematics.families import has_closed_form, rail_of
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.candidate import Candidate
 from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
-from solver.methods.semi_analytic import ArcOptimum, best_on_arcs, why_none
+from solver.methods.semi_analytic import ArcOptimum, best_on_arcs
 from solver.nlp.backends import solve_instance
 from solver.nlp.formulation import build_programme
 from solver.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
@@ -53,7 +54,7 @@ def solve_ncos(
     if task.options.strike_zone_m > 0 or task.options.tilt_tolerance_rad > 0:
         return _solve_with_relaxations(task, _Coupling(task, next_thinning))
     warm_start = best_on_arcs(task)
-    return why_none(task) if warm_start is None else improved(task, warm_start, next_thinning)
+    return diagnose(task) if warm_start is None else improved(task, warm_start, next_thinning)
 
 
 def improved(
@@ -123,7 +124,7 @@ def _solve_with_relaxations(task: ApproachTask, coupling: "_Coupling") -> Candid
     if kept is not None:
         status = AS_GOOD if best is not None else f"warm_start_after_{statuses[0]}"
         return _told(kept, iterations, status)
-    reason = why_none(task)
+    reason = diagnose(task)
     more = f"{reason.detail}; neither did the relaxed programme find one from {len(starts)} starts"
     return replace(reason, detail=more)
 

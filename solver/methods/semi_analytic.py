@@ -30,7 +30,7 @@ def solve_ssas(task: ApproachTask) -> Candidate | Reason:
     """The approach of least effort over all feasible arcs, or why there is none."""
     best = best_on_arcs(task)
     if best is None:
-        return why_none(task)
+        return diagnose(task)
     return Candidate(
         signed_angle(best.angle_rad),
         best.arc.tool_side,
@@ -40,11 +40,6 @@ def solve_ssas(task: ApproachTask) -> Candidate | Reason:
         best.refined,
         "optimum_of_arcs",
     )
-
-
-def why_none(task: ApproachTask) -> Reason:
-    """The reason for a task without feasible arcs."""
-    return diagnose(task)
 
 
 def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:

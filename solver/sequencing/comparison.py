@@ -2,24 +2,12 @@
 
 import numpy as np
 
-from solver.approach.arcs import Arc, sample_task, task_arcs
+from solver.approach.arcs import Arc, sample_task
 from solver.approach.task import approach_task
 from solver.methods.semi_analytic import best_on_arcs
 from solver.problem import Problem
-from solver.sequencing.batch import Batch
 from solver.sequencing.gather import gather
 from solver.sequencing.ladder_graph import refined_ladder
-
-
-def feasible_batch(problem: Problem) -> Batch:
-    """The batch of the targets that have a feasible arc, in the order they were sent.
-
-    Raises:
-        IndexError: there is none.
-    """
-    tasks = [approach_task(problem, target, problem.start) for target in problem.targets]
-    pairs = [(task, arcs) for task in tasks if (arcs := task_arcs(task))]
-    return gather([task for task, _ in pairs], [arcs for _, arcs in pairs])
 
 
 def even_ladder_effort(problem: Problem, angles: int) -> tuple[float, int]:

@@ -173,7 +173,7 @@ def test_all_faults_at_once(server: Server, request_body: Body) -> None:
 
 def test_what_needs_a_closed_form_is_refused_on_a_rail(server: Server) -> None:
     target = {"id": "1", "position_m": [0.5, 0.1, 0.4], "branch_direction": [0, 1, 0]}
-    body: dict[str, object] = {"robot": "puma560_rail", "targets": [target]}
+    body: Body = {"robot": "puma560_rail", "targets": [target]}
     body["options"] = {"include": ["path", "arcs"], "certify": True}
     problem = assert_problem(server.client.post("/v1/plans", json=body), 422)
     pointers = {error["pointer"] for error in problem["errors"]}
