@@ -42,5 +42,5 @@ fi
 echo "== installing $(grep -c '==' "$lock") locked packages from $lock"
 "$venv/bin/python" -m pip install --disable-pip-version-check --require-hashes -r "$lock"
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-echo "== compiling the kinematics kernels (about half a minute, once for each version and processor)"
+echo "== compiling the kernels (some minutes, once for each version and processor)"
 "$venv/bin/python" -m solver.warm_up

@@ -3,48 +3,92 @@
 Run as `python -m solver.warm_up` at set-up; kernels stay compiled on disk.
 """
 
+import multiprocessing
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from typing import Final
 
 from solver.problem import Target
 from solver.robots.model import Robot
 
 
 def warm_up() -> None:
-    """Solves one small problem by every method for each robot, and small batches."""
+    """Everything, in this process."""
+    for part in PARTS:
+        PARTS[part]()
+
+
+def methods() -> None:
+    """One small problem by every method for each robot."""
     from solver import Options, Problem, load_robot, robot_names, solve
-    from solver.approach.numerical import numerical_warm_start
-    from solver.approach.task import approach_task
-    from solver.kinematics.families import has_closed_form
     from solver.registry import METHODS
-    from solver.tolerances import EXACT_TARGETS
 
     for name in robot_names():
         robot = load_robot(name)
-        target = home_target(robot)
         for method in METHODS:
             for norm in ("l1", "l2"):
-                solve(Problem(robot, [target], options=Options(method=method, norm=norm)))
-        problem = Problem(robot, [target])
-        if not has_closed_form(robot, problem.mounted_tool):
-            continue
-        # What is refused, certified, uncertain or relaxed goes through kernels of its own.
-        outside = (0.0, 0.0, 2 * robot.reach_m(problem.mounted_tool))
-        several = [
-            target,
-            replace(target, id="refused", position_m=outside),
-            replace(target, id="uncertain", position_std_m=1e-5),
-        ]
-        solve(Problem(robot, several, options=Options(method="ssas", certify=True)))
-        relaxed = Options(strike_zone_m=0.01, tilt_tolerance_rad=0.1)
-        solve(Problem(robot, several, options=relaxed))
-        # No robot that ships needs the numerical inverse; one brought by somebody may.
-        numerical_warm_start(approach_task(problem, target, problem.start))
+                options = Options(method=method, norm=norm)
+                solve(Problem(robot, [home_target(robot)], options=options))
 
-    # Few targets are ordered by other kernels than many; robots share them.
+
+def refusals_and_bounds() -> None:
+    """What is refused, certified, uncertain or relaxed goes through kernels of its own."""
+    from solver import Options, Problem, load_robot, solve
+
+    robot = load_robot("tabletop")
+    target = home_target(robot)
+    several = [
+        target,
+        replace(target, id="refused", position_m=(0.0, 0.0, 1.0)),
+        replace(target, id="uncertain", position_std_m=1e-5),
+    ]
+    options = Options(method="ssas", order="independent")
+    solve(Problem(robot, several, options=replace(options, certify=True)))
+    relaxed = replace(options, method="ncos", strike_zone_m=0.01, tilt_tolerance_rad=0.1)
+    solve(Problem(robot, several, options=relaxed))
+
+
+def orders() -> None:
+    """Few targets are ordered by other kernels than many; robots share them."""
+    from solver import Options, Problem, load_robot, solve
+    from solver.tolerances import EXACT_TARGETS
+
     robot = load_robot("tabletop")
     for count in (2, EXACT_TARGETS + 1):
         targets = [replace(home_target(robot), id=str(k)) for k in range(count)]
         solve(Problem(robot, targets, options=Options(method="ssas", order="optimal")))
+
+
+def other_arms() -> None:
+    """No robot that ships needs the numerical inverse; one brought by somebody may."""
+    from solver import Problem, load_robot
+    from solver.approach.numerical import numerical_warm_start
+    from solver.approach.task import approach_task
+
+    robot = load_robot("tabletop")
+    problem = Problem(robot, [home_target(robot)])
+    numerical_warm_start(approach_task(problem, problem.targets[0], problem.start))
+
+
+PARTS: Final[Mapping[str, Callable[[], None]]] = {
+    "refusals_and_bounds": refusals_and_bounds,
+    "orders": orders,
+    "methods": methods,
+    "other_arms": other_arms,
+}
+
+
+def compile_on_both_cores() -> None:
+    """Every part in a process of its own, two at a time: compilation uses one core."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(max_workers=2, mp_context=context) as pool:
+        for done in [pool.submit(_run, part) for part in PARTS]:
+            done.result()
+
+
+def _run(part: str) -> None:
+    PARTS[part]()
 
 
 def home_target(robot: Robot) -> Target:
@@ -66,4 +110,4 @@ def home_target(robot: Robot) -> Target:
 
 
 if __name__ == "__main__":
-    warm_up()
+    compile_on_both_cores()
