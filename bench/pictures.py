@@ -84,7 +84,8 @@ def draw_times(results: Results) -> Figure | None:
 def draw_large_batch(results: Results) -> Figure | None:
     """Time a target and peak memory against the size of the batch."""
     values = values_of(results, "large_batch")
-    sizes = sorted(int(name.split()[0]) for name in values if name.endswith(" targets"))
+    alone = [name.removesuffix(" targets") for name in values if name.endswith(" targets")]
+    sizes = sorted(int(name) for name in alone if name.isdigit())
     sizes = [size for size in sizes if f"{size} targets, peak memory" in values]
     if len(sizes) < 2:
         return None

@@ -121,6 +121,9 @@ BETWEEN_ROWS_CUSHION: Final = 0.05
 EXCHANGE_ZOOMS: Final = 4
 """How often the place of that posture is narrowed, eightfold each time: 2 mm to 0.5 um."""
 
+BATCH_PART: Final = 4096
+"""Targets of a batch that are made ready for the inner loops at a time: about 3 MB."""
+
 EFFORT_CELL_RAD: Final = 0.03
 """Cells in which effort is sampled along an arc [rad]: joints turn nearly evenly in one."""
 

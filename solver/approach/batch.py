@@ -16,6 +16,7 @@ from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Problem, Target
 from solver.robots.model import Array
 from solver.robots.rigid import inverse
+from solver.tolerances import BATCH_PART
 
 __all__ = ["NO_BRANCH", "Optima", "chosen_paths", "closed_form_optima", "feasible_arcs"]
 
@@ -53,7 +54,6 @@ def closed_form_optima(
         references: postures from which effort counts, shape (n, 6) or (6,) [rad].
     """
     options = problem.options
-    numbers = packed_targets(problem, positions, directions, references)
     retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
     n = len(positions)
     found = (
@@ -64,7 +64,12 @@ def closed_form_optima(
         np.empty((n, len(retreats), 6)),
         np.empty(n, dtype=np.int64),
     )
-    optimise(numbers, retreats, jump_cosines(retreats), *found)
+    everywhere = np.broadcast_to(references, (n, 6))
+    for first in range(0, n, BATCH_PART):
+        part = slice(first, first + BATCH_PART)
+        numbers = packed_targets(problem, positions[part], directions[part], everywhere[part])
+        fields = (field[part] for field in found)
+        optimise(numbers, retreats, jump_cosines(retreats), *fields)
     return Optima(*found)
 
 
