@@ -82,7 +82,7 @@ and have passed what it may not in between, without turning by CELL_SWING_COSINE
 NARROW_JUMP_RAD: Final = 3e-3
 """Width to which cells with a jump at both ends are halved before slopes are believed [rad]."""
 
-STEEPEST_JUMP: Final = 20.0
+STEEPEST_JUMP: Final = 4.0
 """How fast the margin of a jump (a difference of cosines) may rise with the angle [1/rad]; where it
 would have to rise faster between the ends of a cell, the whole cell jumps."""
 

@@ -79,6 +79,13 @@ class ApproachTask:
 
     def packed(self, tool_side: int) -> PackedTask:
         """The task as the inner loops take it, with the tool on one side, in the mount's frame."""
+        return self._packed[tool_side]
+
+    @cached_property
+    def _packed(self) -> dict[int, PackedTask]:
+        return {side: self._pack(side) for side in self.tool_sides}
+
+    def _pack(self, tool_side: int) -> PackedTask:
         position, y_axis, outward, sideways = self._vectors(tool_side)
         numbers = pack(
             wrist_geometry(self.robot, self.tool),
