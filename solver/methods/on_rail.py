@@ -1,20 +1,19 @@
 """`ncos` on an arm on a rail: the programme moves the slide as well."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
 from solver.approach.rail import at_rail, rail_effort
 from solver.approach.task import ApproachTask
-from solver.cut_in import retreat_rows
 from solver.kinematics.families import Rail
 from solver.methods.any_arm import over_rail
 from solver.methods.candidate import Candidate
 from solver.methods.semi_analytic import solve_ssas
 from solver.nlp.backends import solve_instance
 from solver.nlp.formulation import build_programme
-from solver.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
+from solver.nlp.instance import ProgrammeResult, make_instance, shape_of
+from solver.nlp.starts import start_at
 from solver.solution import Reason
 
 
@@ -48,18 +47,7 @@ def solve_on_rail(task: ApproachTask, rail: Rail) -> Candidate | Reason:
 
 
 def _programme(task: ApproachTask, warm_start: Candidate) -> ProgrammeResult:
-    ends = np.array([task.options.standoff_m, 0.0])
-    rows = retreat_rows(task.robot, task.tool, warm_start.thinning_joints, warm_start.branch, ends)
-    angle = warm_start.approach_angle_rad
-    start = Start(
-        tool_side=warm_start.tool_side,
-        approach_angle_rad=angle,
-        lower_rad=angle - math.pi,
-        upper_rad=angle + math.pi,
-        postures=rows[::-1],
-        retreats_m=ends[::-1],
-        strike_m=0.0,
-        swing_rad=np.zeros(3),
-    )
+    thinning = np.asarray(warm_start.thinning_joints)
+    start = start_at(task, warm_start.tool_side, warm_start.branch, thinning)
     programme = build_programme(task.robot, shape_of(task))
     return solve_instance(task.robot, make_instance(task, programme, start), task.options)

@@ -1,18 +1,16 @@
 """`ncos` on an arm without a closed form: the programme from a numerical warm start."""
 
-import math
-
 import numpy as np
 
 from solver.approach.frame import signed_angle
 from solver.approach.numerical import NumericalStart, numerical_warm_start, polished_thinning
 from solver.approach.task import ApproachTask
 from solver.effort import posture_effort
-from solver.kinematics.numerical import postures_behind
 from solver.methods.candidate import Candidate
 from solver.nlp.backends import solve_instance
 from solver.nlp.formulation import build_programme
-from solver.nlp.instance import Start, make_instance, shape_of
+from solver.nlp.instance import make_instance, shape_of
+from solver.nlp.starts import start_at
 from solver.solution import Reason
 
 
@@ -25,19 +23,7 @@ def solve_other_arm(task: ApproachTask) -> Candidate | Reason:
     start = numerical_warm_start(task)
     if isinstance(start, Reason):
         return start
-    ends = np.array([task.options.standoff_m, 0.0])
-    rows = postures_behind(task.robot, task.tool, start.thinning_joints, ends)
-    angle = start.approach_angle_rad
-    from_here = Start(
-        tool_side=start.tool_side,
-        approach_angle_rad=angle,
-        lower_rad=angle - math.pi,
-        upper_rad=angle + math.pi,
-        postures=rows[::-1],
-        retreats_m=ends[::-1],
-        strike_m=0.0,
-        swing_rad=np.zeros(3),
-    )
+    from_here = start_at(task, start.tool_side, None, np.asarray(start.thinning_joints))
     programme = build_programme(task.robot, shape_of(task))
     instance = make_instance(task, programme, from_here)
     result = solve_instance(task.robot, instance, task.options)

@@ -70,7 +70,7 @@ def corners(task: ApproachTask) -> list[Corner]:
     return sorted(found, key=lambda corner: corner.effort)
 
 
-def start_at(task: ApproachTask, tool_side: int, branch: int, thinning: Array) -> Start:
+def start_at(task: ApproachTask, tool_side: int, branch: int | None, thinning: Array) -> Start:
     """A start from a thinning posture, its standby straight behind it on its branch."""
     retreats = np.array([0.0, task.options.standoff_m])
     rows = retreat_rows(task.robot, task.tool, tuple(thinning), branch, retreats[::-1])

@@ -40,4 +40,5 @@ def test_actions_alternate_after_one_that_is_not_counted() -> None:
 
 
 def test_numbers_of_numpy_can_be_written_as_json() -> None:
-    json.dumps(dataclasses.asdict(row("x", np.float64(2.0), "s", at_most=3.0)))
+    written = json.dumps(dataclasses.asdict(row("x", np.float64(2.0), "s", at_most=3.0)))
+    assert json.loads(written)["value"] == 2.0
