@@ -54,5 +54,9 @@ _choose_cache_folder()  # Numba reads it when a function is decorated, so it mus
 
 kernel = numba.njit(cache=True, error_model="numpy", nogil=True)
 
+minimum = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath={"nnan", "nsz"})
+"""For kernels that take the smallest of many values: as none is NaN, and the sign of a zero says
+nothing, the compiler may take them in any order and several at once. Sums stay in their order."""
+
 inlined = numba.njit(error_model="numpy", inline="always")
 """For the arithmetic of inner loops: without a call in it a loop over arrays is vectorised."""

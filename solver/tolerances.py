@@ -133,9 +133,16 @@ LEAST_EFFORT_CELLS: Final = 4
 EFFORT_SWING_RAD: Final = 0.5
 """Turn of a joint within half a cell above which the cell is halved before kinks are looked for."""
 
-SMOOTH_MINIMUM_RAD: Final = 3e-6
-"""Width to which a smooth minimum of the effort is closed in on [rad]; effort is flat there, so it
-is good to 1e-11."""
+EFFORT_SMOOTH_RAD: Final = 0.1
+"""Turn of a joint between two samples of an arc above which slopes of the effort are not believed:
+it is near a straight wrist."""
+
+SMOOTH_MINIMUM_RAD: Final = 3e-8
+"""Width to which a smooth minimum of the effort is closed in on [rad]: effort beside a straight wrist
+curves by 2e5 a rad2, and is still good to 1e-10."""
+
+FLAT_EFFORT: Final = 1e-12
+"""Difference of the efforts of the three lowest angles at which a smooth minimum is found."""
 
 # --- Certificate --------------------------------------------------------------------------------
 CERTIFICATE_GAP: Final = 2e-7

@@ -14,16 +14,16 @@ import math
 import numpy as np
 
 from solver.approach.cells import (
+    ARC_NODES,
     CROSSED,
     DEAD,
     EDGE,
     EXTREME,
     FULL,
     close_cells,
-    needed_nodes,
     path_state,
 )
-from solver.approach.roots import extreme_margin, tighten
+from solver.approach.roots import ARMS, extreme_margin, tighten
 from solver.approach.turns import (
     CONSTRAINTS,
     JUMP,
@@ -31,7 +31,7 @@ from solver.approach.turns import (
     path_margins,
     row_margin,
     turns_along_path,
-    turns_at_angles,
+    write_turns,
 )
 from solver.compiled import kernel
 from solver.tolerances import ARC_CELLS, EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
@@ -45,83 +45,95 @@ WHOLE_TURN = -1
 _STEP = 2 * math.pi / ARC_CELLS
 _ANGLES = -math.pi + _STEP * np.arange(ARC_CELLS + 1)
 _ANGLES[-1] = math.pi
-_COSINES, _SINES = np.cos(_ANGLES), np.sin(_ANGLES)
+_NODES = np.concatenate(([math.pi - _STEP], _ANGLES, [_STEP - math.pi]))
+_COSINES, _SINES = np.cos(_NODES), np.sin(_NODES)
 
 
 @kernel
 def find_arcs(task, scratch, arcs):
     """Feasible arcs of all branches into arcs, shape (MOST_ARCS, ARC_COLUMNS); returns how many."""
+    open_up(task, scratch)
     count = 0
-    column = np.empty(ARC_CELLS, dtype=np.int64)
-    open_cells = np.empty((2, ARC_CELLS), dtype=np.bool_)
-    needed = np.empty(ARC_CELLS, dtype=np.bool_)
-    for arm in range(4):
-        turns_at_angles(task, _COSINES, _SINES, ARC_CELLS, 0.0, arm, scratch.thinning)
-        open_cells[:] = True
-        column[:] = np.arange(ARC_CELLS)
-        values = scratch.values
-        if close_cells(task, scratch.thinning, ARC_CELLS, column, values, open_cells) == 0:
-            continue
-        needed_nodes(open_cells, needed)
-        listed = 0
-        for k in range(ARC_CELLS):
-            if needed[k]:
-                scratch.cosines[listed], scratch.sines[listed] = _COSINES[k], _SINES[k]
-                column[k] = listed
-                listed += 1
-        standoff = task.retreats[0]
-        turns_at_angles(
-            task, scratch.cosines, scratch.sines, listed, standoff, arm, scratch.standby
-        )
-        if close_cells(task, scratch.standby, listed, column, values, open_cells) == 0:
-            continue
-        needed_nodes(open_cells, needed)
-        for k in range(ARC_CELLS):
-            if needed[k]:
-                turns_along_path(task, _ANGLES[k], arm, scratch.paths[k])
-                for wrist in range(2):
-                    path_margins(task, scratch.paths[k], wrist, scratch.margins[wrist, k])
+    for arm in range(ARMS):
         for wrist in range(2):
-            count = branch_arcs(task, scratch, arm, wrist, open_cells[wrist], arcs, count)
+            start = count
+            for k in range(ARC_CELLS):
+                if scratch.open_cells[arm, wrist, k]:
+                    count = cell_pieces(task, scratch, arm, wrist, k, arcs, start, count)
+            count = close_turn(arcs, start, count)
     return count
 
 
 @kernel
-def branch_arcs(task, scratch, arm, wrist, open_cells, arcs, count):
-    """Appends the arcs of one branch; returns the new count."""
-    start = count
-    margins, paths = scratch.margins[wrist], scratch.paths
-    for k in range(ARC_CELLS):
-        if not open_cells[k]:
-            continue
-        outer, after = paths[(k - 1) % ARC_CELLS], (k + 1) % ARC_CELLS
-        beyond = paths[(k + 2) % ARC_CELLS]
-        left, right = margins[k], margins[after]
-        state, _, _ = path_state(
-            task, wrist, _STEP, outer, paths[k], paths[after], beyond, left, right
-        )  # fmt: skip
-        low, high = _ANGLES[k], _ANGLES[k + 1]
-        if state == FULL:
-            count = append_arc(arcs, start, count, arm, wrist, low, high, JUMP, JUMP)
-            continue
-        clean = state == DEAD
-        if state == EDGE:
-            clean, a, b, by_a, by_b = tighten(
-                task, scratch, arm, wrist, REACH, JUMP, low, high,
-                paths[k], paths[after], left, right,
-            )  # fmt: skip
-            if clean and a < b:
-                count = settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count)
-        if state == CROSSED:
-            clean, a, b, by_a, by_b = tighten(
-                task, scratch, arm, wrist, 0, CONSTRAINTS, low, high,
-                paths[k], paths[after], left, right,
-            )  # fmt: skip
-            if clean and a < b:
-                count = append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
-        if not clean:
-            count = settle(task, scratch, arm, wrist, low, high, JUMP, JUMP, arcs, start, count)
-    return close_turn(arcs, start, count)
+def open_up(task, scratch):
+    """Scans the thinning and the standby posture of a new task: marks the cells that stay open."""
+    scratch.open_cells[:] = True
+    scratch.known_paths[:] = False
+    scratch.known_margins[:] = False
+    for arm in range(ARMS):
+        open_cells = scratch.open_cells[arm]
+        turns_at_nodes(task, 0.0, arm, scratch.thinning[arm])
+        if close_cells(task, scratch.thinning[arm], scratch.values, scratch.highest, open_cells):
+            turns_at_nodes(task, task.retreats[0], arm, scratch.standby)
+            close_cells(task, scratch.standby, scratch.values, scratch.highest, open_cells)
+
+
+@kernel
+def turns_at_nodes(task, retreat, arm, turns):
+    """Turns of one arm branch at all nodes of the turn, at one retreat."""
+    turns[0], turns[1], turns[2] = _COSINES, _SINES, retreat
+    write_turns(task, ARC_NODES, arm, turns)
+
+
+@kernel
+def know(task, scratch, arm, k):
+    """Turns along the cut-in at a cell's lower end, computed when they are first asked for."""
+    path = scratch.paths[arm, k]
+    if not scratch.known_paths[arm, k]:
+        turns_along_path(task, _ANGLES[k], arm, path)
+        scratch.known_paths[arm, k] = True
+    return path
+
+
+@kernel
+def know_margins(task, scratch, arm, wrist, k):
+    """Smallest margins over that cut-in, computed when they are first asked for."""
+    margins = scratch.margins[arm, wrist, k]
+    if not scratch.known_margins[arm, wrist, k]:
+        path_margins(task, know(task, scratch, arm, k), wrist, margins)
+        scratch.known_margins[arm, wrist, k] = True
+    return margins
+
+
+@kernel
+def cell_pieces(task, scratch, arm, wrist, k, arcs, start, count):
+    """Appends the feasible pieces of an open cell of one branch; returns the new count."""
+    after = (k + 1) % ARC_CELLS
+    outer, beyond = (k - 1) % ARC_CELLS, (k + 2) % ARC_CELLS
+    at_left, at_right = know(task, scratch, arm, k), know(task, scratch, arm, after)
+    left = know_margins(task, scratch, arm, wrist, k)
+    right = know_margins(task, scratch, arm, wrist, after)
+    state, _, _ = path_state(
+        task, wrist, _STEP, know(task, scratch, arm, outer), at_left, at_right,
+        know(task, scratch, arm, beyond), left, right,
+    )  # fmt: skip
+    low, high = _ANGLES[k], _ANGLES[k + 1]
+    if state == DEAD:
+        return count
+    if state == FULL:
+        return append_arc(arcs, start, count, arm, wrist, low, high, JUMP, JUMP)
+    if state in (EDGE, CROSSED):
+        first, end = (REACH, JUMP) if state == EDGE else (0, CONSTRAINTS)
+        clean, a, b, by_a, by_b = tighten(
+            task, scratch, arm, wrist, first, end, low, high, at_left, at_right, left, right
+        )
+        if clean and a >= b:
+            return count
+        if clean and state == CROSSED:
+            return append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
+        if clean:
+            return settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count)
+    return settle(task, scratch, arm, wrist, low, high, JUMP, JUMP, arcs, start, count)
 
 
 @kernel

@@ -6,10 +6,11 @@ import numpy as np
 
 from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, find_arcs
 from solver.approach.between_rows import may_leave_between
+from solver.approach.cheapest import cheapest, cheapest_scratch
 from solver.approach.packed import LOWER, UPPER, PackedTask
 from solver.approach.roots import arc_scratch
-from solver.approach.search import effort_scratch, least_effort, path_joints
-from solver.approach.turns import TURN_ROWS, turns_along_path
+from solver.approach.search import path_joints
+from solver.approach.turns import TURN_ROWS, path_columns, turns_along_path
 from solver.compiled import kernel
 
 NO_BRANCH = -1
@@ -22,21 +23,16 @@ def optimise(numbers, retreats, cos_steps, angles, sides, branches, efforts, pat
     `numbers` are packed rows by tool side and target, shape (sides, n, NUMBERS).
     """
     rows = len(retreats)
-    scratch, samples, cell = arc_scratch(rows), effort_scratch(rows), effort_scratch(rows)
-    arcs = np.empty((MOST_ARCS, ARC_COLUMNS))
-    turns, joints = np.empty((TURN_ROWS, rows)), np.empty((6, rows))
+    scratch = cheapest_scratch(rows)
+    turns, joints = np.empty((TURN_ROWS, path_columns(rows))), np.empty((6, rows))
     for k in range(numbers.shape[1]):
         angle, branch, best, work, chosen = math.nan, NO_BRANCH, math.inf, 0, 0
         for side in range(numbers.shape[0]):
             task = PackedTask(numbers[side, k], retreats, cos_steps)
-            for i in range(find_arcs(task, scratch, arcs)):
-                own = int(arcs[i, 0])
-                where, cost, looked = least_effort(
-                    task, samples, cell, own, arcs[i, 1], arcs[i, 2], best
-                )
-                work += looked
-                if cost < best:
-                    angle, branch, best, chosen = where, own, cost, side
+            where, own, cost, looked = cheapest(task, scratch, best)
+            work += looked
+            if cost < best:
+                angle, branch, best, chosen = where, own, cost, side
         angles[k], branches[k], efforts[k], refined[k] = angle, branch, best, work
         sides[k] = 1 - 2 * chosen
         if branch == NO_BRANCH:
@@ -76,7 +72,7 @@ def paths_of_many(numbers, branches, angles, retreats, cos_steps, joints, suspic
     (n,).
     """
     rows = len(retreats)
-    turns, scratch = np.empty((TURN_ROWS, rows)), np.empty((6, rows))
+    turns, scratch = np.empty((TURN_ROWS, path_columns(rows))), np.empty((6, rows))
     for k in range(len(numbers)):
         task = PackedTask(numbers[k], retreats, cos_steps)
         turns_along_path(task, angles[k], branches[k] // 2, turns)

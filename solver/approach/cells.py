@@ -14,6 +14,7 @@ from solver.approach.turns import (
     JOINT_OF_ROW,
     JUMP,
     REACH,
+    ROW_CONSTRAINTS,
     WRIST_ROWS,
     jump_margin,
     passes_behind,
@@ -21,7 +22,7 @@ from solver.approach.turns import (
     row_margin,
     swings,
 )
-from solver.compiled import kernel
+from solver.compiled import inlined, kernel
 from solver.tolerances import (
     ARC_CELLS,
     CELL_SWING_COSINE,
@@ -30,6 +31,9 @@ from solver.tolerances import (
     ROUND_TURN_COSINE,
     STEEPEST_JUMP,
 )
+
+ARC_NODES: Final = ARC_CELLS + 3
+"""Ends of all cells, and a node beyond at each side."""
 
 DEAD: Final = 0
 FULL: Final = 1
@@ -40,70 +44,65 @@ EDGE: Final = 4
 extremum across zero, or a joint swings; the arm enters its reach."""
 
 
-@kernel
+@inlined
 def peak_above(before, left, right, after):
     """Bound of a maximum between two values, from the slopes outside them.
 
     Where the function is concave it stays below both lines that lead in from outside.
     """
     rise, fall = left - before, right - after
-    if rise <= 0.0 or fall <= 0.0:
-        return max(left, right)
-    share = min(max((right - left + fall) / (rise + fall), 0.0), 1.0)
-    return left + rise * share
+    hill = rise > 0.0 and fall > 0.0
+    share = min(max((right - left + fall) / (rise + fall if hill else 1.0), 0.0), 1.0)
+    return left + rise * share if hill else max(left, right)
 
 
 @kernel
-def close_cells(task, turns, count, column, values, open_cells):
+def close_cells(task, turns, values, highest, open_cells):
     """Closes cells in which a constraint of one row is certainly negative; returns how many stay.
 
     Args:
         task: the packed task.
-        turns: of the row, shape (TURN_ROWS, count or more).
-        count: how many columns are in use.
-        column: the column of each node.
-        values: working memory, shape (ROW_CONSTRAINTS, ARC_CELLS).
+        turns: of the row at all nodes: one before the first cell, both ends of every cell, and one
+            beyond the last, shape (TURN_ROWS, ARC_NODES).
+        values: working memory, shape (ROW_CONSTRAINTS, ARC_NODES).
+        highest: working memory, shape (3, ARC_CELLS).
         open_cells: shape (2, ARC_CELLS), by wrist.
     """
-    row_constraints(task, turns, count, values)
+    row_constraints(task, turns, ARC_NODES, values)
+    # What each wrist shares, then each wrist's own: the least of the constraints' highest values.
+    highest[:] = 0.0
+    for row in range(ROW_CONSTRAINTS):
+        group = 0 if row < WRIST_ROWS else 1 if row < WRIST_ROWS + 3 else 2
+        lower_highest(turns, values[row], JOINT_OF_ROW[row], highest[group])
     stay = 0
     for k in range(ARC_CELLS):
-        if not (open_cells[0, k] or open_cells[1, k]):
-            continue
-        places = (
-            column[(k - 1) % ARC_CELLS],
-            column[k],
-            column[(k + 1) % ARC_CELLS],
-            column[(k + 2) % ARC_CELLS],
-        )
-        if certainly_broken(turns, values, places, 0, WRIST_ROWS):
-            open_cells[0, k] = open_cells[1, k] = False
-            continue
         for wrist in range(2):
-            if open_cells[wrist, k]:
-                first = WRIST_ROWS + 3 * wrist
-                if certainly_broken(turns, values, places, first, first + 3):
-                    open_cells[wrist, k] = False
-                else:
-                    stay += 1
+            if min(highest[0, k], highest[1 + wrist, k]) < 0.0:
+                open_cells[wrist, k] = False
+            elif open_cells[wrist, k]:
+                stay += 1
     return stay
 
 
 @kernel
-def certainly_broken(turns, values, places, first, last):
-    """Whether one of some constraints is negative in the whole cell between places 1 and 2."""
-    before, left, right, after = places
-    # Joints have a cusp at the edge of reach, of which slopes outside the cell do not tell.
-    edge = enters_reach(turns, left, turns, right)
-    for row in range(first, last):
-        a, b = values[row, left], values[row, right]
-        if a < 0.0 and b < 0.0:
-            i = JOINT_OF_ROW[row]
-            if i >= 0 and (edge or swung(turns, left, turns, right, i)):
-                continue
-            if peak_above(values[row, before], a, b, values[row, after]) < 0.0:
-                return True
-    return False
+def lower_highest(turns, margins, i, highest):
+    """Lowers what is highest in each cell, shape (ARC_CELLS,), to a margin that stays below zero.
+
+    Joints (i >= 0) have a cusp at the edge of reach, and no slopes to believe where they swing.
+    """
+    cosine, sine = turns[2 * max(i, 0)], turns[2 * max(i, 0) + 1]
+    reach, beside = turns[6 + REACH], turns[6 + BESIDE]
+    # Without calls that get an array: the compiler makes a vector loop of it.
+    for k in range(ARC_CELLS):
+        a, b = margins[k + 1], margins[k + 2]
+        peak = peak_above(margins[k], a, b, margins[k + 3])
+        edge = ((reach[k + 1] < 0.0) != (reach[k + 2] < 0.0)) or (
+            (beside[k + 1] < 0.0) != (beside[k + 2] < 0.0)
+        )
+        turn = cosine[k + 1] * cosine[k + 2] + sine[k + 1] * sine[k + 2]
+        smooth = i < 0 or not (edge or turn < CELL_SWING_COSINE)
+        below = a < 0.0 and b < 0.0 and smooth
+        highest[k] = min(highest[k], peak if below else 0.0)
 
 
 @kernel
@@ -118,17 +117,6 @@ def swung(left, m, right, n, i):
     """Whether joint i turns so far between two columns that its margin need not be smooth."""
     cosines = left[2 * i, m] * right[2 * i, n]
     return cosines + left[2 * i + 1, m] * right[2 * i + 1, n] < CELL_SWING_COSINE
-
-
-@kernel
-def needed_nodes(open_cells, needed):
-    """Marks the ends of open cells and their outer neighbours."""
-    needed[:] = False
-    for wrist in range(2):
-        for k in range(ARC_CELLS):
-            if open_cells[wrist, k]:
-                for step in range(-1, 3):
-                    needed[(k + step) % ARC_CELLS] = True
 
 
 @kernel

@@ -5,13 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.approach.packed import unpack_circle, unpack_geometry
+from solver.approach.cells import ARC_NODES
 from solver.approach.turns import (
     CONSTRAINTS,
     JUMP,
     ROW_CONSTRAINTS,
     TURN_ROWS,
     jump_margin,
+    path_columns,
     path_margins,
     row_margin,
     turns_along_path,
@@ -20,6 +21,9 @@ from solver.approach.turns import (
 from solver.compiled import kernel
 from solver.robots.model import Array
 from solver.tolerances import ARC_CELLS, ARC_END_RAD, EXTREME_ANGLE_RAD
+
+ARMS = 4
+"""Branches but for the wrist: shoulder and elbow."""
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
@@ -30,10 +34,12 @@ class ArcScratch(NamedTuple):
     thinning: Array
     standby: Array
     values: Array
-    cosines: Array
-    sines: Array
+    highest: Array
+    open_cells: Array
     paths: Array
+    known_paths: Array
     margins: Array
+    known_margins: Array
     cell_paths: Array
     cell_margins: Array
     single: Array
@@ -46,19 +52,21 @@ class ArcScratch(NamedTuple):
 def arc_scratch(rows):
     """Working memory for cut-ins of that many rows."""
     return ArcScratch(
-        np.empty((TURN_ROWS, ARC_CELLS)),
-        np.empty((TURN_ROWS, ARC_CELLS)),
-        np.empty((ROW_CONSTRAINTS, ARC_CELLS)),
-        np.empty(ARC_CELLS),
-        np.empty(ARC_CELLS),
-        np.empty((ARC_CELLS, TURN_ROWS, rows)),
-        np.empty((2, ARC_CELLS, CONSTRAINTS)),
-        np.empty((4, TURN_ROWS, rows)),
+        np.empty((ARMS, TURN_ROWS, ARC_NODES)),
+        np.empty((TURN_ROWS, ARC_NODES)),
+        np.empty((ROW_CONSTRAINTS, ARC_NODES)),
+        np.empty((3, ARC_CELLS)),
+        np.empty((ARMS, 2, ARC_CELLS), dtype=np.bool_),
+        np.empty((ARMS, ARC_CELLS, TURN_ROWS, path_columns(rows))),
+        np.empty((ARMS, ARC_CELLS), dtype=np.bool_),
+        np.empty((ARMS, 2, ARC_CELLS, CONSTRAINTS)),
+        np.empty((ARMS, 2, ARC_CELLS), dtype=np.bool_),
+        np.empty((4, TURN_ROWS, path_columns(rows))),
         np.empty((2, CONSTRAINTS)),
         np.empty((TURN_ROWS, 1)),
-        np.empty((TURN_ROWS, rows)),
+        np.empty((TURN_ROWS, path_columns(rows))),
         np.empty(CONSTRAINTS),
-        np.empty((TURN_ROWS, rows)),
+        np.empty((TURN_ROWS, path_columns(rows))),
     )
 
 
@@ -68,13 +76,10 @@ def single_margin(task, scratch, angle, row, arm, wrist, i):
     if i == JUMP:
         turns_along_path(task, angle, arm, scratch.single_path)
         return jump_margin(task, scratch.single_path, wrist)
-    g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
-    shoulder, elbow = arm // 2, 1.0 - 2.0 * (arm % 2)
-    retreat = task.retreats[row]
-    write_turns(
-        g, circle, math.cos(angle), math.sin(angle), retreat, shoulder, elbow, scratch.single, 0
-    )
-    return row_margin(task, scratch.single, 0, wrist, i)
+    turns = scratch.single
+    turns[0, 0], turns[1, 0], turns[2, 0] = math.cos(angle), math.sin(angle), task.retreats[row]
+    write_turns(task, 1, arm, turns)
+    return row_margin(task, turns, 0, wrist, i)
 
 
 @kernel

@@ -11,11 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.approach.cells import peak_above
 from solver.approach.feasibility import choose_turns
 from solver.approach.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS
 from solver.approach.turns import (
     TURN_ROWS,
     joints_of_turns,
+    path_columns,
     turns_along_path,
     turns_at_angles,
 )
@@ -25,22 +27,22 @@ from solver.robots.model import Array
 from solver.tolerances import (
     ANGLE_STEP_RAD,
     EFFORT_CELL_RAD,
+    EFFORT_SMOOTH_RAD,
     EFFORT_SWING_RAD,
+    FLAT_EFFORT,
     LEAST_EFFORT_CELLS,
     SMOOTH_MINIMUM_RAD,
 )
 
 _MOST = math.ceil(2 * math.pi / EFFORT_CELL_RAD) + 1
-_ZOOM = 9
-_SLOPE_SHARE = 1e-3
+_SLOPE_SHARE = 1e-5
+_GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
 
 
 class EffortScratch(NamedTuple):
     """Working memory of the kernels: an arc's samples, and those of one cell."""
 
     angles: Array
-    cosines: Array
-    sines: Array
     turns: Array
     joints: Array
     efforts: Array
@@ -54,8 +56,8 @@ def effort_scratch(rows):
     """Working memory for arcs of up to one turn and cut-ins of that many rows."""
     n = _MOST
     return EffortScratch(
-        np.empty(n), np.empty(n), np.empty(n), np.empty((TURN_ROWS, n)), np.empty((6, n)),
-        np.empty(n), np.empty((TURN_ROWS, rows)), np.empty((6, rows)), np.empty((rows, 6)),
+        np.empty(n), np.empty((TURN_ROWS, n)), np.empty((6, n)), np.empty(n),
+        np.empty((TURN_ROWS, path_columns(rows))), np.empty((6, rows)), np.empty((rows, 6)),
     )  # fmt: skip
 
 
@@ -96,11 +98,8 @@ def path_joints(task, turns, wrist, joints, rows):
 
 @kernel
 def sample_effort(task, scratch, branch, count):
-    """Fills cosines, sines, turns, joints and efforts of the first `count` angles of scratch."""
-    for n in range(count):
-        scratch.cosines[n] = math.cos(scratch.angles[n])
-        scratch.sines[n] = math.sin(scratch.angles[n])
-    turns_at_angles(task, scratch.cosines, scratch.sines, count, 0.0, branch // 2, scratch.turns)
+    """Fills turns, joints and efforts of the first `count` angles of scratch."""
+    turns_at_angles(task, scratch.angles, count, 0.0, branch // 2, scratch.turns)
     joints_of_turns(task, scratch.turns, count, branch % 2, scratch.joints)
     choose_turns_of_samples(task, scratch, branch, count)
     squared = task.numbers[SQUARED] > 0.0
@@ -147,6 +146,41 @@ def least_in_cell(task, joints, k, count):
 
 
 @kernel
+def is_smooth(task, joints, k, count):
+    """Whether effort has no kink from sample k - 1 to k + 2, and no joint swings there."""
+    l1 = task.numbers[SQUARED] == 0.0
+    for i in range(6):
+        reference = task.numbers[REFERENCE + i]
+        beside, nearest, sign = 0.0, math.inf, joints[i, k] - reference
+        for n in range(max(k - 1, 0), min(k + 2, count - 1)):
+            beside = max(beside, abs(joints[i, n + 1] - joints[i, n]))
+        for n in range(max(k - 1, 0), min(k + 3, count)):
+            travel = joints[i, n] - reference
+            nearest = min(nearest, abs(travel) if (travel < 0.0) == (sign < 0.0) else 0.0)
+        if beside > EFFORT_SMOOTH_RAD or (l1 and nearest <= beside / 2):
+            return False
+    return True
+
+
+@kernel
+def valley_above(efforts, k, count):
+    """What effort is at least between samples k and k + 1 where it is smooth.
+
+    Where it is convex it stays above the lines that lead in from outside, else above both samples.
+    """
+    least = min(efforts[k], efforts[k + 1])
+    rises = k + 2 < count and efforts[k + 2] > efforts[k + 1]
+    falls = k > 0 and efforts[k - 1] > efforts[k]
+    if k > 0 and k + 2 < count:
+        return -peak_above(-efforts[k - 1], -efforts[k], -efforts[k + 1], -efforts[k + 2])
+    if rises:
+        least = min(least, 2 * efforts[k + 1] - efforts[k + 2])
+    if falls:
+        least = min(least, 2 * efforts[k] - efforts[k - 1])
+    return least
+
+
+@kernel
 def optimum_on_arc(task, branch, low, high, best):
     """The same as `least_effort`, with working memory of its own."""
     rows = len(task.retreats)
@@ -181,6 +215,8 @@ def least_effort(task, arc, cell, branch, low, high, best):
     for k in range(count - 1):
         if least_in_cell(task, arc.joints, k, count) >= best:
             continue
+        if is_smooth(task, arc.joints, k, count) and valley_above(arc.efforts, k, count) >= best:
+            continue
         refined += 1
         found, cost = refine_cell(task, cell, branch, arc.angles[k], arc.angles[k + 1], best)
         if cost < best:
@@ -194,7 +230,7 @@ def refine_cell(task, scratch, branch, low, high, best):
     stack = np.empty((64, 2))
     stack[0, 0], stack[0, 1] = low, high
     top, angle = 1, math.nan
-    bounds = np.empty(8)
+    bounds, ends = np.empty(8), np.empty((6, 2))
     while top > 0:
         top -= 1
         a, b = stack[top, 0], stack[top, 1]
@@ -212,6 +248,7 @@ def refine_cell(task, scratch, branch, low, high, best):
         found = 0
         bounds[0] = a
         if task.numbers[SQUARED] == 0.0:
+            ends[:, 0], ends[:, 1] = scratch.joints[:, 0], scratch.joints[:, 2]
             for i in range(6):
                 before = scratch.joints[i, 0] - task.numbers[REFERENCE + i]
                 after = scratch.joints[i, 2] - task.numbers[REFERENCE + i]
@@ -219,7 +256,10 @@ def refine_cell(task, scratch, branch, low, high, best):
                     found += 1
                     bounds[found] = -(i + 1)
             for n in range(1, found + 1):
-                bounds[n] = kink(task, scratch, branch, a, b, int(-bounds[n]) - 1)
+                i = int(-bounds[n]) - 1
+                reference = task.numbers[REFERENCE + i]
+                before, after = ends[i, 0] - reference, ends[i, 1] - reference
+                bounds[n] = kink(task, scratch, branch, i, a, before, b, after)
         bounds[1 : found + 1].sort()
         bounds[found + 1] = b
         for n in range(found + 1):
@@ -248,12 +288,11 @@ def travel_at(task, scratch, branch, angle, joint):
 
 
 @kernel
-def kink(task, scratch, branch, low, high, joint):
-    """Angle between two at which a joint passes its reference value (Illinois method)."""
-    a, fa = low, travel_at(task, scratch, branch, low, joint)
-    b, fb = high, travel_at(task, scratch, branch, high, joint)
-    if (fa < 0.0) == (fb < 0.0):
-        return a if abs(fa) < abs(fb) else b
+def kink(task, scratch, branch, joint, a, fa, b, fb):
+    """Angle at which a joint passes its reference value (Illinois method).
+
+    It is fa and fb from it at the angles a and b, on different sides.
+    """
     c = a
     for _ in range(60):
         if fa == fb:
@@ -271,11 +310,20 @@ def kink(task, scratch, branch, low, high, joint):
 
 
 @kernel
+def effort_at(task, scratch, branch, angle):
+    """Effort at one angle."""
+    scratch.angles[0] = angle
+    sample_effort(task, scratch, branch, 1)
+    return scratch.efforts[0]
+
+
+@kernel
 def smooth_minimum(task, scratch, branch, low, high):
     """Angle and effort of the least effort where effort is smooth between two angles.
 
     Both ends are candidates; between them only where effort falls at the lower and rises at the
-    upper, and there by closing in on the best of evenly spaced angles.
+    upper, and there by Brent's method: parabolas through the three lowest, golden section where
+    they do not close in.
     """
     h = (high - low) * _SLOPE_SHARE
     scratch.angles[0], scratch.angles[1] = low, low + h
@@ -287,14 +335,33 @@ def smooth_minimum(task, scratch, branch, low, high):
     if not falls or not rises:
         return angle, best
     a, b = low, high
-    while b - a > SMOOTH_MINIMUM_RAD:
-        spread(scratch, a, b, _ZOOM)
-        sample_effort(task, scratch, branch, _ZOOM)
-        k = 0
-        for n in range(1, _ZOOM):
-            if costs[n] < costs[k]:
-                k = n
-        if costs[k] < best:
-            angle, best = scratch.angles[k], costs[k]
-        a, b = scratch.angles[max(k - 1, 0)], scratch.angles[min(k + 1, _ZOOM - 1)]
-    return angle, best
+    x = w = v = a + _GOLDEN * (b - a)
+    fx = fw = fv = effort_at(task, scratch, branch, x)
+    step = last = b - a
+    while max(x - a, b - x) > 2 * SMOOTH_MINIMUM_RAD:
+        if 0.0 < max(fw, fv) - fx <= FLAT_EFFORT:
+            break
+        r, q = (x - w) * (fx - fv), (x - v) * (fx - fw)
+        p = (x - v) * q - (x - w) * r
+        q = 2.0 * (q - r)
+        p, q = (-p, q) if q > 0.0 else (p, -q)
+        before, last = last, step
+        if abs(p) < abs(0.5 * q * before) and q * (a - x) < p < q * (b - x):
+            step = p / q
+        else:
+            last = (a if x >= (a + b) / 2 else b) - x
+            step = _GOLDEN * last
+        u = x + (
+            step if abs(step) > SMOOTH_MINIMUM_RAD else math.copysign(SMOOTH_MINIMUM_RAD, step)
+        )
+        fu = effort_at(task, scratch, branch, u)
+        if fu <= fx:
+            a, b = (x, b) if u >= x else (a, x)
+            v, fv, w, fw, x, fx = w, fw, x, fx, u, fu
+            continue
+        a, b = (u, b) if u < x else (a, u)
+        if fu <= fw or w == x:
+            v, fv, w, fw = w, fw, u, fu
+        elif fu <= fv or v in (x, w):
+            v, fv = u, fu
+    return (x, fx) if fx < best else (angle, best)

@@ -15,7 +15,7 @@ from solver.approach.packed import (
     unpack_circle,
     unpack_geometry,
 )
-from solver.compiled import inlined, kernel
+from solver.compiled import inlined, kernel, minimum
 from solver.kinematics.arctangent import atan2
 from solver.kinematics.spherical_wrist import arm_turns, elbow_turns, wrist_turns
 from solver.tolerances import SINGULAR_WRIST
@@ -35,49 +35,67 @@ JOINT_OF_ROW = (-1, -1, 0, 1, 2, 3, 4, 5, 3, 4, 5)
 6 of wrist 0, then of wrist 1."""
 
 
-@inlined
-def write_turns(g, circle, cos, sin, retreat, shoulder, elbow, turns, n):
-    """Writes column n of turns for an approach angle by its cosine and sine; elbow is 1.0 or -1.0.
+@kernel
+def write_turns(task, count, arm, turns):
+    """Turns of one arm branch (0 to 3) in the first `count` columns, in the place of their places.
 
     A straight wrist, where theta4 and theta6 are one axis, has theta4 at joint 4's zero.
+
+    Args:
+        task: the packed task.
+        count: how many columns are in use.
+        arm: twice the shoulder's number plus the elbow's.
+        turns: shape (TURN_ROWS, count or more). Given: cosine and sine of the approach angle and
+            the retreat [m] in the first three rows; all rows are written.
     """
-    place, x, y, z = tool_place(circle, cos, sin, retreat)
-    cx = place[0] - g.tool_length * z[0]
-    cy = place[1] - g.tool_length * z[1]
-    cz = place[2] - g.tool_length * z[2]
-    cos1, sin1, r, s, cos_g, sin_g, inverse2, reach, beside = arm_turns(g, cx, cy, cz, shoulder)
-    sin_g = sin_g * elbow
-    cos2, sin2, cos3, sin3, cos23, sin23 = elbow_turns(g, r, s, cos_g, sin_g, inverse2)
-    r13, r23, cos5, r31, r32 = wrist_turns(g, cos1, sin1, cos23, sin23, x, y, z)
-    sin5 = math.sqrt(r13 * r13 + r23 * r23)
-    inverse5 = 1.0 / max(sin5, SINGULAR_WRIST)
-    turns[0, n], turns[1, n] = cos1, sin1
-    turns[2, n], turns[3, n] = cos2, sin2
-    turns[4, n], turns[5, n] = cos3, sin3
-    turns[6, n], turns[7, n] = g.sign5 * r13 * inverse5, g.sign5 * r23 * inverse5
-    turns[8, n], turns[9, n] = cos5, sin5
-    turns[10, n], turns[11, n] = g.sign4 * r31 * inverse5, -g.sign4 * r32 * inverse5
-    turns[12, n], turns[13, n] = reach, beside
+    g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
+    shoulder, elbow = arm // 2, 1.0 - 2.0 * (arm % 2)
+    # The compiler makes a vector loop of this as long as nothing in it is called with an array, and
+    # no further array has to be told apart from the rows.
+    for n in range(count):
+        place, x, y, z = tool_place(circle, turns[0, n], turns[1, n], turns[2, n])
+        cx = place[0] - g.tool_length * z[0]
+        cy = place[1] - g.tool_length * z[1]
+        cz = place[2] - g.tool_length * z[2]
+        cos1, sin1, r, s, cos_g, sin_g, inverse2, reach, beside = arm_turns(g, cx, cy, cz, shoulder)
+        sin_g = sin_g * elbow
+        cos2, sin2, cos3, sin3, cos23, sin23 = elbow_turns(g, r, s, cos_g, sin_g, inverse2)
+        r13, r23, cos5, r31, r32 = wrist_turns(g, cos1, sin1, cos23, sin23, x, y, z)
+        sin5 = math.sqrt(r13 * r13 + r23 * r23)
+        inverse5 = 1.0 / max(sin5, SINGULAR_WRIST)
+        turns[0, n], turns[1, n] = cos1, sin1
+        turns[2, n], turns[3, n] = cos2, sin2
+        turns[4, n], turns[5, n] = cos3, sin3
+        turns[6, n], turns[7, n] = g.sign5 * r13 * inverse5, g.sign5 * r23 * inverse5
+        turns[8, n], turns[9, n] = cos5, sin5
+        turns[10, n], turns[11, n] = g.sign4 * r31 * inverse5, -g.sign4 * r32 * inverse5
+        turns[12, n], turns[13, n] = reach, beside
 
 
 @kernel
-def turns_at_angles(task, cosines, sines, count, retreat, arm, turns):
-    """Turns of one arm branch (0 to 3) at the first `count` approach angles, one retreat."""
-    g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
-    shoulder, elbow = arm // 2, 1.0 - 2.0 * (arm % 2)
+def turns_at_angles(task, angles, count, retreat, arm, turns):
+    """Turns of one arm branch at the first `count` of some approach angles, at one retreat."""
     for n in range(count):
-        write_turns(g, circle, cosines[n], sines[n], retreat, shoulder, elbow, turns, n)
+        turns[0, n], turns[1, n], turns[2, n] = math.cos(angles[n]), math.sin(angles[n]), retreat
+    write_turns(task, count, arm, turns)
+
+
+@inlined
+def path_columns(rows):
+    """Columns of the turns of a cut-in of that many rows: enough to take the vector loop."""
+    return max(24, 8 * ((rows + 7) // 8))
 
 
 @kernel
 def turns_along_path(task, angle, arm, turns):
-    """Turns of one arm branch at one approach angle, for every retreat of the task."""
-    shoulder, elbow = arm // 2, 1.0 - 2.0 * (arm % 2)
-    cos, sin = math.cos(angle), math.sin(angle)
-    g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
-    retreats = task.retreats
-    for n in range(len(retreats)):
-        write_turns(g, circle, cos, sin, retreats[n], shoulder, elbow, turns, n)
+    """Turns of one arm branch at one approach angle, for every retreat of the task.
+
+    `turns` has `path_columns` columns; those beyond the retreats are the thinning posture's.
+    """
+    rows, columns = len(task.retreats), turns.shape[1]
+    turns[0], turns[1], turns[2] = math.cos(angle), math.sin(angle), 0.0
+    turns[2, :rows] = task.retreats
+    write_turns(task, columns, arm, turns)
 
 
 @inlined
@@ -115,7 +133,7 @@ def row_margin(task, turns, n, wrist, i):
     return turns[6 + i, n] if i >= REACH else turn_margin(task, turns, n, wrist, i)
 
 
-@kernel
+@minimum
 def path_margins(task, turns, wrist, margins):
     """Smallest margins over a whole cut-in's columns, into margins, shape (CONSTRAINTS,)."""
     rows = len(task.retreats)
@@ -134,24 +152,26 @@ def path_margins(task, turns, wrist, margins):
     margins[JUMP] = jump_margin(task, turns, wrist)
 
 
-@kernel
+@minimum
 def jump_margin(task, turns, wrist):
     """Smallest margin of the turns from row to row, as a difference of cosines.
 
     A joint that is inside its limits in two rows, and outside on the short way between them, has
     jumped as well.
     """
-    least = math.inf
-    for n in range(len(task.retreats) - 1):
-        allowed = task.cos_steps[n]
-        for i in range(6):
+    steps, least, widest = len(task.retreats) - 1, math.inf, math.inf
+    for n in range(steps):
+        widest = min(widest, task.cos_steps[n])
+    for i in range(6):
+        for n in range(steps):
             cosines = turns[2 * i, n] * turns[2 * i, n + 1]
             sines = turns[2 * i + 1, n] * turns[2 * i + 1, n + 1]
-            least = min(least, cosines + sines - allowed)
-            half = task.numbers[COS_HALF + i]
-            may_cross = half < 0.0 and allowed < 2 * half * half - 1.0
-            if may_cross and passes_behind(task, turns, n, turns, n + 1, wrist, i):
-                least = min(least, -1.0)
+            least = min(least, cosines + sines - task.cos_steps[n])
+        half = task.numbers[COS_HALF + i]
+        if half < 0.0 and widest < 2 * half * half - 1.0:
+            for n in range(steps):
+                if passes_behind(task, turns, n, turns, n + 1, wrist, i):
+                    least = min(least, -1.0)
     return least
 
 
@@ -173,18 +193,18 @@ def passes_behind(task, left, m, right, n, wrist, i):
     return not free and (side_a < 0.0) != (side_b < 0.0) and ahead_a < 0.0 and ahead_b < 0.0
 
 
-@kernel
+@minimum
 def swings(before, after, rows, least_cosine):
     """Whether a joint turns far between two angles in some row: arccos(least_cosine) or more.
 
     It does beside a straight wrist, or with the wrist centre near the waist's axis.
     """
+    least = 1.0
     for i in range(6):
         for n in range(rows):
             change = before[2 * i, n] * after[2 * i, n] + before[2 * i + 1, n] * after[2 * i + 1, n]
-            if change < least_cosine:
-                return True
-    return False
+            least = min(least, change)
+    return least < least_cosine
 
 
 @inlined

@@ -173,14 +173,12 @@ def arm_turns(g, cx, cy, cz, shoulder):
     of the shoulder's offset beside the waist's axis, infinite where there is none.
     """
     rho2 = cx * cx + cy * cy
-    x = math.sqrt(max(rho2 - g.shoulder * g.shoulder, 0.0))
-    if shoulder == 1:
-        x = -x
-    if rho2 > TINY_M2:
-        cos1 = (cx * x - g.sign1 * g.shoulder * cy) / rho2
-        sin1 = (cy * x + g.sign1 * g.shoulder * cx) / rho2
-    else:
-        cos1, sin1 = (-1.0 if shoulder == 1 else 1.0), 0.0
+    facing = 1.0 - 2.0 * shoulder
+    x = facing * math.sqrt(max(rho2 - g.shoulder * g.shoulder, 0.0))
+    inverse_rho2 = 1.0 / max(rho2, TINY_M2)
+    away = rho2 > TINY_M2
+    cos1 = (cx * x - g.sign1 * g.shoulder * cy) * inverse_rho2 if away else facing
+    sin1 = (cy * x + g.sign1 * g.shoulder * cx) * inverse_rho2 if away else 0.0
     r, s = x - g.a1, g.sign1 * (cz - g.d1)
     d2 = r * r + s * s
     distance = math.sqrt(d2)
@@ -188,7 +186,7 @@ def arm_turns(g, cx, cy, cz, shoulder):
     beside = math.sqrt(rho2) - abs(g.shoulder) if g.shoulder != 0.0 else math.inf
     cosine = (d2 - g.a2 * g.a2 - g.l3 * g.l3) / (2 * g.a2 * g.l3)
     cos_g = min(max(cosine, -1.0), 1.0)
-    sin_g = math.sqrt((1.0 - cos_g) * (1.0 + cos_g))
+    sin_g = math.sqrt(max((1.0 - cos_g) * (1.0 + cos_g), 0.0))
     length2 = d2
     if cosine != cos_g:
         length2 = distance * abs(g.a2 + g.l3 * cos_g)
