@@ -138,8 +138,8 @@ EFFORT_SMOOTH_RAD: Final = 0.1
 it is near a straight wrist."""
 
 SMOOTH_MINIMUM_RAD: Final = 3e-8
-"""Width to which a smooth minimum of the effort is closed in on [rad]: effort beside a straight wrist
-curves by 2e5 a rad2, and is still good to 1e-10."""
+"""Width to which a smooth minimum of the effort is closed in on [rad]: beside a straight wrist,
+where effort curves by 2e5 a rad2, it is still good to 1e-10."""
 
 FLAT_EFFORT: Final = 1e-12
 """Difference of the efforts of the three lowest angles at which a smooth minimum is found."""

@@ -20,6 +20,7 @@ from solver.approach.cells import (
     EDGE,
     EXTREME,
     FULL,
+    any_cell_reached,
     close_cells,
     path_state,
 )
@@ -29,6 +30,7 @@ from solver.approach.turns import (
     JUMP,
     REACH,
     path_margins,
+    reaches_at_angles,
     row_margin,
     turns_along_path,
     write_turns,
@@ -70,12 +72,18 @@ def open_up(task, scratch):
     scratch.open_cells[:] = True
     scratch.known_paths[:] = False
     scratch.known_margins[:] = False
-    for arm in range(ARMS):
-        open_cells = scratch.open_cells[arm]
-        turns_at_nodes(task, 0.0, arm, scratch.thinning[arm])
-        if close_cells(task, scratch.thinning[arm], scratch.values, scratch.highest, open_cells):
-            turns_at_nodes(task, task.retreats[0], arm, scratch.standby)
-            close_cells(task, scratch.standby, scratch.values, scratch.highest, open_cells)
+    values, highest = scratch.values, scratch.highest
+    for shoulder in range(2):
+        reaches_at_angles(task, _COSINES, _SINES, shoulder, values)
+        if not any_cell_reached(values, highest):
+            scratch.open_cells[2 * shoulder : 2 * shoulder + 2] = False
+            continue
+        for arm in range(2 * shoulder, 2 * shoulder + 2):
+            open_cells, thinning = scratch.open_cells[arm], scratch.thinning[arm]
+            turns_at_nodes(task, 0.0, arm, thinning)
+            if close_cells(task, thinning, values, highest, open_cells):
+                turns_at_nodes(task, task.retreats[0], arm, scratch.standby)
+                close_cells(task, scratch.standby, values, highest, open_cells)
 
 
 @kernel
@@ -86,37 +94,35 @@ def turns_at_nodes(task, retreat, arm, turns):
 
 
 @kernel
-def know(task, scratch, arm, k):
-    """Turns along the cut-in at a cell's lower end, computed when they are first asked for."""
-    path = scratch.paths[arm, k]
-    if not scratch.known_paths[arm, k]:
-        turns_along_path(task, _ANGLES[k], arm, path)
-        scratch.known_paths[arm, k] = True
-    return path
+def know_path(task, arm, k, paths, known):
+    """Turns along the cut-in at node k of one arm, computed when they are first asked for."""
+    if not known[k]:
+        turns_along_path(task, _ANGLES[k], arm, paths[k])
+        known[k] = True
 
 
 @kernel
-def know_margins(task, scratch, arm, wrist, k):
+def know_margins(task, wrist, k, paths, margins, known):
     """Smallest margins over that cut-in, computed when they are first asked for."""
-    margins = scratch.margins[arm, wrist, k]
-    if not scratch.known_margins[arm, wrist, k]:
-        path_margins(task, know(task, scratch, arm, k), wrist, margins)
-        scratch.known_margins[arm, wrist, k] = True
-    return margins
+    if not known[k]:
+        path_margins(task, paths[k], wrist, margins[k])
+        known[k] = True
 
 
 @kernel
 def cell_pieces(task, scratch, arm, wrist, k, arcs, start, count):
     """Appends the feasible pieces of an open cell of one branch; returns the new count."""
-    after = (k + 1) % ARC_CELLS
-    outer, beyond = (k - 1) % ARC_CELLS, (k + 2) % ARC_CELLS
-    at_left, at_right = know(task, scratch, arm, k), know(task, scratch, arm, after)
-    left = know_margins(task, scratch, arm, wrist, k)
-    right = know_margins(task, scratch, arm, wrist, after)
+    paths, known_paths = scratch.paths[arm], scratch.known_paths[arm]
+    margins, known_margins = scratch.margins[arm, wrist], scratch.known_margins[arm, wrist]
+    outer, after, beyond = (k - 1) % ARC_CELLS, (k + 1) % ARC_CELLS, (k + 2) % ARC_CELLS
+    for node in (outer, k, after, beyond):
+        know_path(task, arm, node, paths, known_paths)
+    for node in (k, after):
+        know_margins(task, wrist, node, paths, margins, known_margins)
+    at_left, at_right, left, right = paths[k], paths[after], margins[k], margins[after]
     state, _, _ = path_state(
-        task, wrist, _STEP, know(task, scratch, arm, outer), at_left, at_right,
-        know(task, scratch, arm, beyond), left, right,
-    )  # fmt: skip
+        task, wrist, _STEP, paths[outer], at_left, at_right, paths[beyond], left, right
+    )
     low, high = _ANGLES[k], _ANGLES[k + 1]
     if state == DEAD:
         return count

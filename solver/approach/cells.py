@@ -6,6 +6,7 @@ stays below both lines that lead in. That holds where a joint does not swing, be
 straight wrist or the waist's axis, and does not enter the arm's reach, where it has a cusp.
 """
 
+import math
 from typing import Final
 
 from solver.approach.packed import COS_HALF
@@ -82,6 +83,18 @@ def close_cells(task, turns, values, highest, open_cells):
             elif open_cells[wrist, k]:
                 stay += 1
     return stay
+
+
+@kernel
+def any_cell_reached(values, highest):
+    """Whether the first two rows of values, the reaches at all nodes, leave a cell open."""
+    for k in range(ARC_CELLS):
+        highest[0, k] = math.inf
+        for row in range(2):
+            margins = values[row]
+            peak = peak_above(margins[k], margins[k + 1], margins[k + 2], margins[k + 3])
+            highest[0, k] = min(highest[0, k], peak)
+    return highest[0].max() >= 0.0
 
 
 @kernel

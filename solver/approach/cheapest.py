@@ -14,7 +14,7 @@ from solver.approach.cells import enters_reach
 from solver.approach.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
 from solver.approach.roots import ARMS, ArcScratch, arc_scratch
 from solver.approach.search import EffortScratch, effort_scratch, least_effort
-from solver.approach.turns import wrist_sign
+from solver.approach.turns import BESIDE, REACH, wrist_sign
 from solver.compiled import inlined, kernel
 from solver.kinematics.arctangent import atan2
 from solver.robots.model import Array
@@ -70,13 +70,21 @@ def cheapest(task, scratch, best):
         cells[first] = cells[waiting]
         own = 2 * arm + wrist
         for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, 0, 0)):
+            low, high = pieces[n, 1], pieces[n, 2]
+            low_cusp, high_cusp = at_cusp(pieces[n, 3]), at_cusp(pieces[n, 4])
             where, cost, looked = least_effort(
-                task, samples, cell, own, pieces[n, 1], pieces[n, 2], best
+                task, samples, cell, own, low, high, low_cusp, high_cusp, best
             )
             work += looked
             if cost < best:
                 angle, branch, best = where, own, cost
     return angle, branch, best, work
+
+
+@inlined
+def at_cusp(constraint):
+    """Whether what ends a piece is the edge of reach, where joints have a cusp."""
+    return constraint in (REACH, BESIDE)
 
 
 @kernel
@@ -101,18 +109,18 @@ def list_open_cells(task, open_cells, thinning, reference, cells, bounds):
 
 
 @inlined
-def turn_between(cos_a, sin_a, cos_b, sin_b):
-    """How far two directions are from each other [rad]."""
-    return abs(atan2(sin_a * cos_b - cos_a * sin_b, cos_a * cos_b + sin_a * sin_b))
+def angle_of_cosine(cosine):
+    """The angle between two directions, from its cosine [rad]."""
+    return atan2(math.sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)), cosine)
 
 
 @kernel
 def effort_at_least(task, turns, reference, wrist, k):
     """What effort is at least in a cell of the turn.
 
-    A joint may leave the range between its two nodes by half of what it turns next to it, by all of
-    it where the arm enters its reach; nothing is said of one that swings. A joint of more than one
-    turn counts by its nearest.
+    A joint may leave the range between the cell's ends by half of what it turns next to it, by all
+    of it where the arm enters its reach; nothing is said of one that swings. A joint of more than
+    one turn counts by its nearest.
 
     Args:
         task: the packed task.
@@ -125,16 +133,16 @@ def effort_at_least(task, turns, reference, wrist, k):
     total = 0.0
     for i in range(6):
         c, s = turns[2 * i], turns[2 * i + 1]
-        if c[k + 1] * c[k + 2] + s[k + 1] * s[k + 2] < CELL_SWING_COSINE:
+        inside = c[k + 1] * c[k + 2] + s[k + 1] * s[k + 2]
+        if inside < CELL_SWING_COSINE:
             continue
-        beside = 0.0
-        for n in range(k, k + 3):
-            beside = max(beside, turn_between(c[n], s[n], c[n + 1], s[n + 1]))
+        before = c[k] * c[k + 1] + s[k] * s[k + 1]
+        after = c[k + 2] * c[k + 3] + s[k + 2] * s[k + 3]
+        beside = angle_of_cosine(min(inside, before, after))
         cos = wrist_sign(wrist, i, True) * reference[i, 0]
         sin = wrist_sign(wrist, i, False) * reference[i, 1]
-        at_low = turn_between(c[k + 1], s[k + 1], cos, sin)
-        at_high = turn_between(c[k + 2], s[k + 2], cos, sin)
-        least = max(min(at_low, at_high) - slack * beside, 0.0)
+        nearest = max(c[k + 1] * cos + s[k + 1] * sin, c[k + 2] * cos + s[k + 2] * sin)
+        least = max(angle_of_cosine(nearest) - slack * beside, 0.0)
         weight = task.numbers[WEIGHTS + i]
         total += weight * (least * least if task.numbers[SQUARED] > 0.0 else least)
     return total

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.approach.cells import peak_above
 from solver.approach.feasibility import choose_turns
-from solver.approach.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS
+from solver.approach.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS, PackedTask
 from solver.approach.turns import (
     TURN_ROWS,
     joints_of_turns,
@@ -149,12 +149,13 @@ def least_in_cell(task, joints, k, count):
 def is_smooth(task, joints, k, count):
     """Whether effort has no kink from sample k - 1 to k + 2, and no joint swings there."""
     l1 = task.numbers[SQUARED] == 0.0
+    first, last = max(k - 1, 0), min(k + 2, count - 1)
     for i in range(6):
         reference = task.numbers[REFERENCE + i]
         beside, nearest, sign = 0.0, math.inf, joints[i, k] - reference
-        for n in range(max(k - 1, 0), min(k + 2, count - 1)):
+        for n in range(first, last):
             beside = max(beside, abs(joints[i, n + 1] - joints[i, n]))
-        for n in range(max(k - 1, 0), min(k + 3, count)):
+        for n in range(first, last + 1):
             travel = joints[i, n] - reference
             nearest = min(nearest, abs(travel) if (travel < 0.0) == (sign < 0.0) else 0.0)
         if beside > EFFORT_SMOOTH_RAD or (l1 and nearest <= beside / 2):
@@ -163,32 +164,44 @@ def is_smooth(task, joints, k, count):
 
 
 @kernel
-def valley_above(efforts, k, count):
+def valley(efforts, k, count):
     """What effort is at least between samples k and k + 1 where it is smooth.
 
     Where it is convex it stays above the lines that lead in from outside, else above both samples.
     """
-    least = min(efforts[k], efforts[k + 1])
-    rises = k + 2 < count and efforts[k + 2] > efforts[k + 1]
-    falls = k > 0 and efforts[k - 1] > efforts[k]
+    low, high = efforts[k], efforts[k + 1]
+    before = efforts[k - 1] if k > 0 else math.inf
+    after = efforts[k + 2] if k + 2 < count else math.inf
     if k > 0 and k + 2 < count:
-        return -peak_above(-efforts[k - 1], -efforts[k], -efforts[k + 1], -efforts[k + 2])
-    if rises:
-        least = min(least, 2 * efforts[k + 1] - efforts[k + 2])
-    if falls:
-        least = min(least, 2 * efforts[k] - efforts[k - 1])
-    return least
+        return -peak_above(-before, -low, -high, -after)
+    if k > 0:
+        return min(low, high, 2 * low - before) if before > low else min(low, high)
+    return min(low, high, 2 * high - after) if after > high else min(low, high)
 
 
 @kernel
-def optimum_on_arc(task, branch, low, high, best):
-    """The same as `least_effort`, with working memory of its own."""
-    rows = len(task.retreats)
-    return least_effort(task, effort_scratch(rows), effort_scratch(rows), branch, low, high, best)
+def optimum_on_arcs(numbers, retreats, cos_steps, sides, branches, lower, upper):
+    """The arc of least effort of some arcs, shape (n,) each, its angle, effort, and cells refined.
+
+    `numbers` are packed rows by tool side, shape (sides, NUMBERS). The arc is -1 where there is
+    none.
+    """
+    rows = len(retreats)
+    samples, cell = effort_scratch(rows), effort_scratch(rows)
+    arc, angle, best, refined = -1, math.nan, math.inf, 0
+    for n in range(len(branches)):
+        task = PackedTask(numbers[sides[n]], retreats, cos_steps)
+        where, cost, count = least_effort(
+            task, samples, cell, branches[n], lower[n], upper[n], True, True, best
+        )
+        refined += count
+        if cost < best:
+            arc, angle, best = n, where, cost
+    return arc, angle, best, refined
 
 
 @kernel
-def least_effort(task, arc, cell, branch, low, high, best):
+def least_effort(task, arc, cell, branch, low, high, low_cusp, high_cusp, best):
     """Angle and effort of the least effort on one arc, if below `best`.
 
     Args:
@@ -198,6 +211,8 @@ def least_effort(task, arc, cell, branch, low, high, best):
         branch: 0 to 7.
         low: the arc's lower end [rad].
         high: its upper end [rad].
+        low_cusp: effort may turn within no distance of the lower end, at the edge of reach.
+        high_cusp: the same of the upper end.
         best: effort to beat; infinity to get the arc's own optimum.
 
     Returns:
@@ -215,7 +230,9 @@ def least_effort(task, arc, cell, branch, low, high, best):
     for k in range(count - 1):
         if least_in_cell(task, arc.joints, k, count) >= best:
             continue
-        if is_smooth(task, arc.joints, k, count) and valley_above(arc.efforts, k, count) >= best:
+        cusp = (k == 0 and low_cusp) or (k == count - 2 and high_cusp)
+        smooth = not cusp and is_smooth(task, arc.joints, k, count)
+        if smooth and valley(arc.efforts, k, count) >= best:
             continue
         refined += 1
         found, cost = refine_cell(task, cell, branch, arc.angles[k], arc.angles[k + 1], best)

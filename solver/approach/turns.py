@@ -73,6 +73,18 @@ def write_turns(task, count, arm, turns):
 
 
 @kernel
+def reaches_at_angles(task, cosines, sines, shoulder, values):
+    """Both reach margins of the thinning posture, shared by the elbows, into rows of values."""
+    g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
+    for n in range(len(cosines)):
+        place, _, _, z = tool_place(circle, cosines[n], sines[n], 0.0)
+        cx = place[0] - g.tool_length * z[0]
+        cy = place[1] - g.tool_length * z[1]
+        cz = place[2] - g.tool_length * z[2]
+        _, _, _, _, _, _, _, values[0, n], values[1, n] = arm_turns(g, cx, cy, cz, shoulder)
+
+
+@kernel
 def turns_at_angles(task, angles, count, retreat, arm, turns):
     """Turns of one arm branch at the first `count` of some approach angles, at one retreat."""
     for n in range(count):

@@ -4,12 +4,13 @@ The global optimum of the unrelaxed task as far as the arcs are found; see docs/
 Source: S 3.2, with the approach angle in the place of its redundant coordinate.
 """
 
-import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from solver.approach.arcs import Arc, task_arcs
 from solver.approach.frame import signed_angle
-from solver.approach.search import optimum_on_arc
+from solver.approach.search import optimum_on_arcs
 from solver.approach.task import ApproachTask
 from solver.diagnosis import diagnose
 from solver.methods.candidate import Candidate
@@ -44,14 +45,15 @@ def solve_ssas(task: ApproachTask) -> Candidate | Reason:
 
 def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:
     """The least effort over every arc of every branch; None when there is no arc."""
-    best: ArcOptimum | None = None
-    refined = 0
-    for arc in task_arcs(task):
-        below = math.inf if best is None else best.effort
-        angle, cost, count = optimum_on_arc(
-            task.packed(arc.tool_side), arc.branch, arc.lower_rad, arc.upper_rad, below
-        )
-        refined += count
-        if cost < below:
-            best = ArcOptimum(arc, float(angle), float(cost), refined)
-    return best
+    arcs = task_arcs(task)
+    packed = [task.packed(side) for side in task.tool_sides]
+    chosen, angle, effort, refined = optimum_on_arcs(
+        np.stack([side.numbers for side in packed]),
+        packed[0].retreats,
+        packed[0].cos_steps,
+        np.array([task.tool_sides.index(arc.tool_side) for arc in arcs], dtype=np.int64),
+        np.array([arc.branch for arc in arcs], dtype=np.int64),
+        np.array([arc.lower_rad for arc in arcs]),
+        np.array([arc.upper_rad for arc in arcs]),
+    )
+    return None if chosen < 0 else ArcOptimum(arcs[chosen], angle, effort, refined)
