@@ -1,0 +1,1 @@
+"""Scenarios: what is compared, a file each."""
