@@ -22,7 +22,7 @@ from solver.comparison.summary import summaries
 
 # A median of that many calls no longer moves by more than the machine does.
 MOST_REPEATS: Final = 25
-MAXIMUM_REPEATS: Final = 10_000
+MAXIMUM_REPEATS: Final = 1000
 # How long a person waits [s]; shared evenly, so that slow methods get fewer repeats.
 TIMING_BUDGET_S: Final = 40.0
 
