@@ -513,3 +513,11 @@ LADDER_KEPT: Final = 16
 
 LADDER_ROUNDS: Final = 3
 """Halvings; the angles are then 6.6 mrad apart, and polishing has no further to go than that."""
+
+SAME_POINT_M: Final = 1e-6
+"""Neighbouring points of a branch this near are one point, and have no direction between them [m];
+a camera tells nothing apart at a micrometre."""
+
+AS_CHEAP_RELATIVE: Final = 1e-7
+"""How much dearer than another method's an effort may be and still count as the same, as a share:
+an optimum is found to about 1e-9, and efforts of a few radians are recomputed to 1e-12."""
