@@ -542,3 +542,11 @@ the reset, far from the optimum, and the default of 0.1 takes a third more itera
 
 PRINTED_SAMPLES: Final = 721
 """Values of beta at which the printed problem P1 is looked at, 0.1 degrees apart."""
+
+SAME_POINT_M: Final = 1e-6
+"""Neighbouring points of a branch this near are one point, and have no direction between them [m];
+a camera tells nothing apart at a micrometre."""
+
+AS_CHEAP_RELATIVE: Final = 1e-7
+"""How much dearer than another method's an effort may be and still count as the same, as a share:
+an optimum is found to about 1e-9, and efforts of a few radians are recomputed to 1e-12."""

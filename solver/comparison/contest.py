@@ -79,6 +79,8 @@ class Contest:
         reference: the method that others are compared with.
         problem: the approach problem, where there is one; pictures are made from it.
         seeds: every seed that the targets depend on.
+        findings: what the accounts say about the scenario's question, a sentence each, from the
+            accounts by target id and entrant; None where there is no such question.
     """
 
     scenario: str
@@ -94,3 +96,4 @@ class Contest:
     reference: str = "ncos"
     problem: Problem | None = None
     seeds: tuple[int, ...] = ()
+    findings: Callable[[Mapping[tuple[str, str], Account]], tuple[str, ...]] | None = None

@@ -1,1 +1,1 @@
-"""Scenarios: what is compared, a file each."""
+"""The scenarios, a file each, and what several of them share; `solver.comparison.registry` lists them."""
