@@ -1,8 +1,8 @@
 """Table 3 of S as data: 20 targets, indices and processor times, from MATLAB R2009a.
 
 The origin of `table_3.csv` is the table as printed, column by column; nothing in it is computed.
-Its targets lie on a sphere of 100 mm about (500, 367.5, -395) mm, S's plant, with z cut off after a
-tenth of a millimetre (docs/strawberry.md).
+Its targets lie on a sphere of 100 mm about (500, 367.5, -395) mm, S's plant, with z to a tenth of a
+millimetre (docs/strawberry.md).
 """
 
 import csv

@@ -50,10 +50,10 @@ NOTES: Final = (
     "The paper prints neither masses nor offsets. d_x, d_z and m3 g are unknown, d_y is known "
     "between bounds. One constant is fitted to the NCOS column, nothing to the other two.",
     "The SSAS column cannot be reproduced: SSAS - NCOS is a constant in each quadrant of the "
-    "plant, and another in each. Along AS's choice theta is 0 at all 20 targets, which gives one constant "
-    "for all of them; where it is not 0 the difference changes with the target. Whatever the "
-    "unknowns are, four constants are out of reach. Nor can AS's column be where the limit of s10 "
-    "cuts off its choice: the printed AS - NCOS falls there by up to 41.4 N mm, ours rises.",
+    "plant, and another in each. Along AS's choice theta is 0 at all 20 targets, which gives one "
+    "constant for all of them; where it is not 0 the difference changes with the target. Whatever "
+    "the unknowns are, four constants are out of reach. Nor can AS's column be where the limit of "
+    "s10 cuts off its choice: the printed AS - NCOS falls there by up to 41.4 N mm, ours rises.",
     "The rows named printed show the text's misprints; they are expected to fail or to be dearer.",
 )
 
