@@ -13,7 +13,7 @@ import orjson
 from app.reports.csv_table import comparison_to_csv
 from app.reports.html import comparison_to_html
 from app.reports.markdown import comparison_to_markdown
-from app.reports.pictures import PICTURE_FILES, draw_pictures
+from app.reports.picture import PICTURE_FILES
 from app.reports.wire import comparison_to_wire
 from solver.comparison.contest import Contest
 from solver.comparison.result import Comparison
@@ -24,6 +24,8 @@ OWN_FILES: Final = (*REPORT_FILES, *PICTURE_FILES)
 
 def report_files(contest: Contest, comparison: Comparison) -> dict[str, bytes]:
     """The contents of every file of a report, by name; all of OWN_FILES or fewer pictures."""
+    from app.reports.pictures import draw_pictures
+
     pictures = draw_pictures(contest, comparison)
     return {
         "report.html": comparison_to_html(comparison, pictures).encode(),

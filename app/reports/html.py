@@ -10,7 +10,7 @@ from typing import Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from app.reports.pictures import Picture
+from app.reports.picture import Picture
 from app.reports.tables import (
     machine_lines,
     reading_notes,

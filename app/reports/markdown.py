@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 
-from app.reports.pictures import Picture
+from app.reports.picture import Picture
 from app.reports.tables import (
     TextTable,
     machine_lines,
@@ -19,11 +19,14 @@ _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#|~!&])")
 
 def comparison_to_markdown(comparison: Comparison, pictures: Sequence[Picture]) -> str:
     """The report, with pictures by their file names in the same folder."""
+    found = [f"- {markdown_text(finding)}" for finding in comparison.findings]
+    findings = ["## Findings", "\n".join(found)] if found else []
     parts = [
         f"# {markdown_text(comparison.title)}",
         f"Scenario `{_code(comparison.scenario)}`: {markdown_text(comparison.origin)}",
         f"Minimised: {markdown_text(comparison.index_name)}.",
         *map(markdown_text, comparison.notes),
+        *findings,
         "## Methods",
         _table(summary_table(comparison)),
         "\n".join(f"- {markdown_text(note)}" for note in reading_notes(comparison)),

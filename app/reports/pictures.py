@@ -2,32 +2,26 @@
 
 import io
 import warnings
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Final
 
 from matplotlib.figure import Figure
 
 from app.pictures.contest_effort import MOST_PANELS, can_draw_effort, draw_contest_effort
 from app.pictures.contest_poses import MOST_POSTURES, draw_contest_poses
+from app.pictures.contest_strawberry import draw_strawberry
 from app.pictures.contest_times import draw_times
+from app.reports.picture import EFFORT, POSES, TIMES, Picture
 from solver.comparison.contest import Contest
 from solver.comparison.result import Comparison
 
 DOTS_PER_INCH: Final = 95
 
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture: its file's name, what it shows, and the PNG."""
-
-    file: str
-    caption: str
-    png: bytes
-
-
-POSES, EFFORT, TIMES = "poses.png", "effort.png", "times.png"
-PICTURE_FILES: Final = (POSES, EFFORT, TIMES)
+# Scenarios of mechanisms that are no robot model draw themselves.
+MECHANISM_POSES: Final[Mapping[str, Callable[[Comparison], Figure]]] = MappingProxyType(
+    {"strawberry": draw_strawberry}
+)
 
 
 def draw_pictures(contest: Contest, comparison: Comparison) -> tuple[Picture, ...]:
@@ -58,6 +52,13 @@ def _wanted(
                 "each method chose",
                 lambda: draw_contest_effort(comparison, problem),
             )
+    if contest.scenario in MECHANISM_POSES:
+        draw = MECHANISM_POSES[contest.scenario]
+        yield (
+            POSES,
+            "The posture of each of the paper's methods at the first target that all of them reach",
+            lambda: draw(comparison),
+        )
     yield (
         TIMES,
         "Time against effort, a point a target; answers that do not hold are crosses at the top",

@@ -124,6 +124,7 @@ class ComparisonResultAnswer(BaseModel):
     seeds: list[int]
     machine: MachineAnswer
     repeats: int
+    findings: list[str]
     rows: list[ComparisonRowAnswer]
     summaries: list[MethodSummaryAnswer]
 

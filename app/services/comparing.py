@@ -8,7 +8,6 @@ from pathlib import Path
 import orjson
 
 from app.reports.html import comparison_to_html
-from app.reports.pictures import draw_pictures
 from app.reports.wire import comparison_to_wire
 from app.services.wire import parse_request, problem_from_wire
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
@@ -70,6 +69,8 @@ def _own_contest(file: Path, methods: Sequence[str] | None) -> Contest:
 
 def compare_to_bytes(order: ComparisonOrder) -> tuple[bytes, str]:
     """The comparison as JSON and as an HTML page; runs in a solver process."""
+    from app.reports.pictures import draw_pictures
+
     contest = prepare(order.scenario, order.methods)
     comparison = run_contest(
         contest,

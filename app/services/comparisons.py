@@ -141,9 +141,7 @@ class ComparisonService:
             **document.get("progress", {}),
         )
 
-    async def _end(
-        self, document: Document, changes: Document, page: str | None = None
-    ) -> None:
+    async def _end(self, document: Document, changes: Document, page: str | None = None) -> None:
         await self._save(document | {"ended_at": timestamp()} | changes, ended=True, page=page)
         self._progress_file(document["id"]).unlink(missing_ok=True)
 

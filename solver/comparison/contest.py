@@ -4,10 +4,11 @@ What is timed (`Entrant.solve`) is apart from what judges it (`Contest.account`)
 pays for the verifier and none is believed.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from solver.exceptions import UnknownEntrant
 from solver.problem import Problem
 
 
@@ -97,3 +98,20 @@ class Contest:
     problem: Problem | None = None
     seeds: tuple[int, ...] = ()
     findings: Callable[[Mapping[tuple[str, str], Account]], tuple[str, ...]] | None = None
+
+
+def with_entrants(contest: Contest, names: Sequence[str] | None) -> Contest:
+    """The contest with the entrants of these names only, in its own order; as it is for None.
+
+    Raises:
+        UnknownEntrant: no entrant has one of the names.
+    """
+    if names is None:
+        return contest
+    known = tuple(entrant.name for entrant in contest.entrants)
+    for name in names:
+        if name not in known:
+            raise UnknownEntrant(name, known=known)
+    return replace(
+        contest, entrants=tuple(entrant for entrant in contest.entrants if entrant.name in names)
+    )

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from solver.comparison.contest import Contest
+from solver.comparison.contest import Contest, with_entrants
 from solver.comparison.scenarios.data_sets import (
     data_set_1_contest,
     data_set_2_contest,
     data_set_3_contest,
 )
+from solver.comparison.scenarios.strawberry import strawberry_contest
 from solver.exceptions import UnknownScenario
 
 
@@ -34,6 +35,11 @@ _ROWS = (
     Scenario("data-set-1", "the thesis's horizontal branch, reconstructed", data_set_1_contest),
     Scenario("data-set-2", "the thesis's leaning branch, reconstructed", data_set_2_contest),
     Scenario("data-set-3", "the thesis's branch in space", data_set_3_contest),
+    Scenario(
+        "strawberry",
+        "the strawberry paper's mechanism, 20 targets",
+        lambda names: with_entrants(strawberry_contest(), names),
+    ),
 )
 
 SCENARIOS: Final[Mapping[str, Scenario]] = MappingProxyType({row.name: row for row in _ROWS})

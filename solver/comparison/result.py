@@ -127,6 +127,7 @@ class Comparison:
         scenario, title, origin, index_name, notes, published_on, reference, seeds: the contest's.
         machine: processor, system, versions, load and date; see `solver.comparison.machine`.
         repeats: the most timed calls of one method at one target.
+        findings: what the answers say about the scenario's question, a sentence each.
         rows: target by target, the methods of each in the contest's order.
         summaries: one a method, in the contest's order.
     """
@@ -141,6 +142,7 @@ class Comparison:
     seeds: tuple[int, ...]
     machine: Mapping[str, Any]
     repeats: int
+    findings: tuple[str, ...]
     rows: tuple[Row, ...]
     summaries: tuple[MethodSummary, ...]
 

@@ -55,9 +55,12 @@ def run_contest(
     )
     timing = _Timing(repeats, TIMING_BUDGET_S / starts)
     rows: list[Row] = []
+    accounts: dict[tuple[str, str], Account] = {}
     for number in range(len(contest.target_ids)):
         for entrant in contest.entrants:
-            rows.append(_row(contest, entrant, number, timing))
+            row, account = _row(contest, entrant, number, timing)
+            rows.append(row)
+            accounts[row.target_id, row.method] = account
             if progress is not None:
                 progress(len(rows), total)
     rows = _compared(rows, contest.reference)
@@ -72,6 +75,7 @@ def run_contest(
         seeds=contest.seeds,
         machine=about,
         repeats=repeats or MOST_REPEATS,
+        findings=() if contest.findings is None else contest.findings(accounts),
         rows=tuple(rows),
         summaries=tuple(summaries(contest.entrants, rows, contest.reference)),
     )
@@ -90,7 +94,8 @@ class _Timing:
         return not times_s or (len(times_s) < MOST_REPEATS and sum(times_s) < self.budget_s)
 
 
-def _row(contest: Contest, entrant: Entrant, number: int, timing: _Timing) -> Row:
+def _row(contest: Contest, entrant: Entrant, number: int, timing: _Timing) -> tuple[Row, Account]:
+    """The row of an entrant at a target, and the account of its warm answer."""
     target_id = contest.target_ids[number]
     account, times = _measured(contest, entrant.name, entrant.solve, number, timing)
     published = contest.published.get((target_id, entrant.name), Published())
@@ -111,16 +116,17 @@ def _row(contest: Contest, entrant: Entrant, number: int, timing: _Timing) -> Ro
         published_time_s=published.time_s,
     )
     if entrant.solve_cold is None:
-        return row
-    account, times = _measured(contest, entrant.name, entrant.solve_cold, number, timing)
-    return replace(
+        return row, account
+    cold, times = _measured(contest, entrant.name, entrant.solve_cold, number, timing)
+    row = replace(
         row,
         cold_time_s=statistics.median(times),
         cold_repeats=len(times),
-        cold_solved=account.solved,
-        cold_index=account.index,
-        cold_detail=account.detail,
+        cold_solved=cold.solved,
+        cold_index=cold.index,
+        cold_detail=cold.detail,
     )
+    return row, account
 
 
 def _measured(
