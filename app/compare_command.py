@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 DEFAULT_FOLDER = Path("prunus-compare")
 MOST_FAULTS_SHOWN = 5
 SHOWN_HEADINGS = (
-    "method", "solved", "time median", "time max", "cold median", "above best % median",
-    "above best % max", "increase % median", "increase % max", "time less %",
+    "method", "solved", "time median", "cold median", "increase % median", "increase % max",
 )  # fmt: skip
 
 
@@ -154,15 +153,17 @@ def _print(comparison: "Comparison") -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from app.reports.tables import summary_table
+    from app.reports.tables import answer_table, time_table
 
-    summary = summary_table(comparison)
     table = Table(box=SIMPLE_HEAD, title=Text(comparison.title))
-    kept = [k for k, heading in enumerate(summary.headings) if heading in SHOWN_HEADINGS]
-    for k in kept:
-        table.add_column(Text(summary.headings[k]), justify="left" if k == 0 else "right")
-    for row in summary.rows:
-        table.add_row(*(Text(row[k]) for k in kept))
+    for place, heading in enumerate(SHOWN_HEADINGS):
+        justify: Literal["left", "right"] = "right" if place else "left"
+        table.add_column(Text(heading), justify=justify, no_wrap=not place)
+    answers, times = answer_table(comparison), time_table(comparison)
+    for answer, cost in zip(answers.rows, times.rows, strict=True):
+        cells = dict(zip(times.headings, cost, strict=True))
+        cells |= dict(zip(answers.headings, answer, strict=True))
+        table.add_row(*(Text(cells.get(heading, "")) for heading in SHOWN_HEADINGS))
     console = Console()
     console.print(table)
     for finding in comparison.findings:

@@ -12,11 +12,12 @@ from markupsafe import Markup
 
 from app.reports.picture import Picture
 from app.reports.tables import (
+    answer_table,
     machine_lines,
     reading_notes,
     residual_table,
     row_table,
-    summary_table,
+    time_table,
 )
 from solver.comparison.result import Comparison
 
@@ -29,7 +30,8 @@ def comparison_to_html(comparison: Comparison, pictures: Sequence[Picture]) -> s
         "report.html.jinja",
         comparison=comparison,
         text_columns=TEXT_COLUMNS,
-        summary=summary_table(comparison),
+        answers=answer_table(comparison),
+        times=time_table(comparison),
         notes=reading_notes(comparison),
         pictures=[
             {"caption": picture.caption, "base64": base64.b64encode(picture.png).decode()}

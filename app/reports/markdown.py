@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 from app.reports.picture import Picture
 from app.reports.tables import (
     TextTable,
+    answer_table,
     machine_lines,
     reading_notes,
     residual_table,
     row_table,
-    summary_table,
+    time_table,
 )
 from solver.comparison.result import Comparison
 
@@ -28,7 +29,9 @@ def comparison_to_markdown(comparison: Comparison, pictures: Sequence[Picture]) 
         *map(markdown_text, comparison.notes),
         *findings,
         "## Methods",
-        _table(summary_table(comparison)),
+        _table(answer_table(comparison)),
+        "## Times",
+        _table(time_table(comparison)),
         "\n".join(f"- {markdown_text(note)}" for note in reading_notes(comparison)),
         *(
             f"![{markdown_text(picture.caption)}]({picture.file})\n\n{markdown_text(picture.caption)}"

@@ -145,31 +145,44 @@ def _spread(spread: Spread | None, write: Callable[[float], str]) -> tuple[str, 
     return median, q95, top
 
 
-SUMMARY_HEADINGS: Final = (
-    "method", "what", "solved", "time median", "time 95 %", "time max", "time charged",
-    "cold median", "cold solved", "above best % median",
-    "above best % 95 %", "above best % max", "increase % median",
-    "increase % 95 %", "increase % max", "time less %", "smallest margin", "iterations max",
-    "largest difference to published %",
+ANSWER_HEADINGS: Final = (
+    "method", "what", "solved", "increase % median", "increase % 95 %", "increase % max",
+    "published increase %", "above best % median", "above best % 95 %", "above best % max",
+    "largest difference to published %", "smallest margin", "iterations max",
+)  # fmt: skip
+TIME_HEADINGS: Final = (
+    "method", "solved", "time median", "time 95 %", "time max", "time charged", "published time",
+    "time less %", "published time less %", "cold median", "cold max", "cold solved",
 )  # fmt: skip
 
 
-def _summary_cells(summary: MethodSummary) -> tuple[str, ...]:
-    cold = summary.cold_solved
+def _answer_cells(summary: MethodSummary) -> tuple[str, ...]:
     return (
         summary.method,
         summary.summary,
         f"{summary.solved} of {summary.targets}",
-        *_spread(summary.time_s, seconds),
-        seconds(summary.charged_time_s),
-        _spread(summary.cold_time_s, seconds)[0],
-        NONE if cold is None else f"{cold} of {summary.targets}",
-        *_spread(summary.gap, lambda value: _percent(100 * value)),
         *_spread(summary.increase_percent, _percent),
-        _optional(summary.time_reduction_percent, _percent),
+        _optional(summary.published_increase_percent, _percent),
+        *_spread(summary.gap, lambda value: _percent(100 * value)),
+        _optional(summary.largest_published_difference_percent, _percent),
         _optional(summary.smallest_margin, lambda value: number(value, 3)),
         _spread(summary.iterations, lambda value: f"{value:g}")[2],
-        _optional(summary.largest_published_difference_percent, _percent),
+    )
+
+
+def _time_cells(summary: MethodSummary) -> tuple[str, ...]:
+    cold, cold_solved = _spread(summary.cold_time_s, seconds), summary.cold_solved
+    return (
+        summary.method,
+        f"{summary.solved} of {summary.targets}",
+        *_spread(summary.time_s, seconds),
+        seconds(summary.charged_time_s),
+        _optional(summary.published_time_s, seconds),
+        _optional(summary.time_reduction_percent, _percent),
+        _optional(summary.published_time_reduction_percent, _percent),
+        cold[0],
+        cold[2],
+        NONE if cold_solved is None else f"{cold_solved} of {summary.targets}",
     )
 
 
@@ -177,13 +190,20 @@ def _optional(value: float | None, write: Callable[[float], str]) -> str:
     return NONE if value is None else write(value)
 
 
-def summary_table(comparison: Comparison) -> TextTable:
-    """A line a method; columns that no method has anything in are left out."""
-    rows = [_summary_cells(summary) for summary in comparison.summaries]
-    kept = [
-        k for k in range(len(SUMMARY_HEADINGS)) if any(row[k] not in ("", NONE) for row in rows)
-    ]
-    return TextTable(_picked(SUMMARY_HEADINGS, kept), tuple(_picked(row, kept) for row in rows))
+def answer_table(comparison: Comparison) -> TextTable:
+    """What a method's answers come to, a line a method."""
+    return _kept(ANSWER_HEADINGS, [_answer_cells(summary) for summary in comparison.summaries])
+
+
+def time_table(comparison: Comparison) -> TextTable:
+    """What they cost, a line a method."""
+    return _kept(TIME_HEADINGS, [_time_cells(summary) for summary in comparison.summaries])
+
+
+def _kept(headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> TextTable:
+    """The table without the columns that no row has anything in."""
+    kept = [k for k in range(len(headings)) if any(row[k] not in ("", NONE) for row in rows)]
+    return TextTable(_picked(headings, kept), tuple(_picked(row, kept) for row in rows))
 
 
 def _picked(cells: Sequence[str], places: Iterable[int]) -> tuple[str, ...]:

@@ -62,6 +62,9 @@ class MethodSummaryAnswer(BaseModel):
     increase_percent: SpreadAnswer | MISSING = MISSING
     not_compared: int
     time_reduction_percent: float | MISSING = MISSING
+    published_time_s: float | MISSING = MISSING
+    published_increase_percent: float | MISSING = MISSING
+    published_time_reduction_percent: float | MISSING = MISSING
     smallest_margin: float | MISSING = MISSING
     iterations: SpreadAnswer | MISSING = MISSING
     largest_residuals: dict[str, float]

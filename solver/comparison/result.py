@@ -94,6 +94,9 @@ class MethodSummary:
         increase_percent: the same, over targets that the reference solves.
         not_compared: how many targets the reference does not solve.
         time_reduction_percent: median over targets that the method and the reference solve.
+        published_time_s: median of what the document prints [s].
+        published_increase_percent: the same of its increases.
+        published_time_reduction_percent: the same of its time reductions.
         smallest_margin: of the solved targets [rad, or m where that joint slides].
         iterations: over all targets where the method says them; None where it never does.
         largest_residuals: of the solved targets, by name with its unit.
@@ -113,6 +116,9 @@ class MethodSummary:
     increase_percent: Spread | None
     not_compared: int
     time_reduction_percent: float | None
+    published_time_s: float | None
+    published_increase_percent: float | None
+    published_time_reduction_percent: float | None
     smallest_margin: float | None
     iterations: Spread | None
     largest_residuals: Mapping[str, float]

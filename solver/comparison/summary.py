@@ -42,7 +42,6 @@ def _summary(
     cold = [row.cold_time_s for row in rows if row.cold_time_s is not None]
     iterations = [float(row.iterations) for row in rows if row.iterations is not None]
     compared = [row for row in rows if answered is not None and row.target_id in answered]
-    reductions = [row.time_reduction_percent for row in compared]
     names = dict.fromkeys(name for row in solved for name in row.residuals)
     return MethodSummary(
         method=entrant.name,
@@ -59,7 +58,12 @@ def _summary(
             spread(_charged((row, row.increase_percent) for row in compared)) if compared else None
         ),
         not_compared=0 if answered is None else len(rows) - len(compared),
-        time_reduction_percent=quantile([share for share in reductions if share is not None], 0.5),
+        time_reduction_percent=_median(row.time_reduction_percent for row in compared),
+        published_time_s=_median(row.published_time_s for row in rows),
+        published_increase_percent=_median(row.published_increase_percent for row in rows),
+        published_time_reduction_percent=_median(
+            row.published_time_reduction_percent for row in rows
+        ),
         smallest_margin=min((row.margin for row in solved if row.margin is not None), default=None),
         iterations=spread(iterations) if iterations else None,
         largest_residuals={
@@ -75,6 +79,10 @@ def _summary(
             default=None,
         ),
     )
+
+
+def _median(values: Iterable[float | None]) -> float | None:
+    return quantile([value for value in values if value is not None], 0.5)
 
 
 def _charged(pairs: Iterable[tuple[Row, float | None]]) -> list[float]:
