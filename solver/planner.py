@@ -122,7 +122,9 @@ def plan_target(
     return replace(judge(problem, approach, reference), arcs=arcs)
 
 
-def solve_between_rows_too(task: ApproachTask, solve: Solve) -> tuple[Candidate | Reason, ApproachTask]:
+def solve_between_rows_too(
+    task: ApproachTask, solve: Solve
+) -> tuple[Candidate | Reason, ApproachTask]:
     """A method's answer, with limits that hold between the rows of the cut-in as well.
 
     Also returns the task as it was solved last.

@@ -1,4 +1,4 @@
-"""A contest of methods over the targets of an approach problem, judged by the plan's own verifier."""
+"""A contest of methods over the targets of an approach problem, judged by a plan's verifier."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,15 +26,15 @@ from solver.verification import refusal, verify
 
 INDEX_NAME: Final = "effort [rad]"
 COLD_STARTS: Final = 8
-"""Random starts of a cold solve; nearly every one of two alone ends in the wrong basin."""
+"""Random starts of a cold solve, as the benchmark of cold starts has them."""
 
-TOLD_RESIDUALS: Final = (
+TOLD_RESIDUALS: Final[tuple[str, ...]] = (
     "path_position_m",
     "path_axes_rad",
     "limit_excess_rad",
     "path_deviation_m",
 )
-"""Of the verifier's residuals, those that say something to people; the others are claims checked."""
+"""Of the verifier's residuals, those that tell people something; the others check claims."""
 
 BETWEEN_ROWS: Final = "deviation_between_rows_m"
 """How far joint-linear motion through the answered rows leaves the straight cut-in."""
@@ -74,7 +74,7 @@ class Answer:
 
 def comparable(problem: Problem, **options: Any) -> Problem:
     """A problem as contests have it: each target on its own, untimed, with options by keyword."""
-    kept = {"order": "independent", "include": ("path",), "certify": False}
+    kept: dict[str, Any] = {"order": "independent", "include": ("path",), "certify": False}
     return replace(problem, options=replace(problem.options, **(kept | options)))
 
 
@@ -160,7 +160,9 @@ def _entrant(variant: Variant) -> Entrant:
         return _answer(tasks[k], variant.solve)
 
     def cold(k: int) -> Answer:
-        return _answer(tasks[k], lambda task: solve_cold(task, COLD_STARTS, problem.options.seed + k))
+        return _answer(
+            tasks[k], lambda task: solve_cold(task, COLD_STARTS, problem.options.seed + k)
+        )
 
     programme = variant.solve is METHODS["ncos"].solve
     starts_cold = programme and has_closed_form(problem.robot, problem.mounted_tool)
