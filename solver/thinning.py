@@ -1,11 +1,12 @@
 """The 5-8 pattern: which blossoms of a branch are removed, and which stay to become fruit.
 
-Source: T 3.1.2. From the branch's origin the first 5 cm lose all their blossoms. Then windows of 5 cm
-and 8 cm alternate, beginning with 5 cm: a 5 cm window keeps its first and its last blossom, an 8 cm
-window none. T says "usually the ones located in close proximity to the extremes"; here it is always
-the first and the last, the two that are furthest apart.
+Source: T 3.1.2. From the branch's origin the first 5 cm lose all their blossoms. Then windows of
+5 cm and 8 cm alternate, beginning with 5 cm: a 5 cm window keeps its first and its last blossom, an
+8 cm window none. T says "usually the ones located in close proximity to the extremes"; here it is
+always the first and the last, the two that are furthest apart.
 """
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from solver.exceptions import Fault, InvalidProblem
 from solver.robots.model import Array
 from solver.tolerances import SAME_POINT_M
 
-# In whole nanometres, so that a blossom at a window's boundary is on the side where decimals put it.
+# Whole nanometres, so that a blossom at a window's boundary is on the side where decimals put it.
 _NANOMETRES: Final = 1_000_000_000
 _BARE: Final = 50_000_000
 _FRUITING: Final = 50_000_000
@@ -63,7 +64,7 @@ class PlacedBlossom:
         id: the blossom's.
         branch_id: its branch's.
         position_m: on the branch [m].
-        branch_direction: unit tangent towards the tip; at a corner, of the segment that begins there.
+        branch_direction: unit tangent towards the tip; at a corner, of the segment behind it.
         distance_m: from the branch's origin along the branch [m].
     """
 
@@ -86,8 +87,8 @@ def select_blossoms(branches: Sequence[BlossomBranch]) -> ThinningSelection:
     """The 5-8 pattern on every branch.
 
     Windows are half-open: a blossom at a boundary belongs to the window that begins there. A window
-    that the tip cuts off is a window like the others. A single blossom in a 5 cm window is its first
-    and its last, and stays.
+    that the tip cuts off is a window like the others. A single blossom in a 5 cm window is its
+    first and its last, and stays.
 
     Raises:
         InvalidProblem: with every fault found; paths begin with "branches".
@@ -177,7 +178,7 @@ def _point_faults(
             yield Fault((*path, k), "has a value that is not finite")
     if spoiled or len(points) < 2:
         return
-    for k, (one, two) in enumerate(zip(points[:-1], points[1:], strict=True), start=1):
+    for k, (one, two) in enumerate(itertools.pairwise(points), start=1):
         distance = math.dist(one, two)
         if not distance > SAME_POINT_M:
             yield Fault((*path, k), "is the same point as the one before")

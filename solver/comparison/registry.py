@@ -1,4 +1,7 @@
-"""The scenarios, one row each. Adding one is a file in `solver/comparison/scenarios` and a row here."""
+"""The scenarios, one row each.
+
+Adding one is a file in `solver/comparison/scenarios`, a row here, and one in docs/scenarios.md.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +14,13 @@ from solver.comparison.scenarios.data_sets import (
     data_set_2_contest,
     data_set_3_contest,
 )
+from solver.comparison.scenarios.fixed_or_floating import fixed_or_floating_contest
+from solver.comparison.scenarios.kac_v import kac_v_contest
+from solver.comparison.scenarios.near_limits import near_limits_contest
+from solver.comparison.scenarios.path_points import path_points_contest
+from solver.comparison.scenarios.sample_counts import sample_counts_contest
 from solver.comparison.scenarios.strawberry import strawberry_contest
+from solver.comparison.scenarios.workspace import workspace_contest
 from solver.exceptions import UnknownScenario
 
 
@@ -40,6 +49,12 @@ _ROWS = (
         "the strawberry paper's mechanism, 20 targets",
         lambda names: with_entrants(strawberry_contest(), names),
     ),
+    Scenario("workspace", "random targets within reach", workspace_contest),
+    Scenario("near-limits", "targets with little room", near_limits_contest),
+    Scenario("kac-v", "the thesis's model tree, partly assumed", kac_v_contest),
+    Scenario("sample-counts", "10 to 50 sampled angles from random starts", sample_counts_contest),
+    Scenario("path-points", "2 to 20 postures along the cut-in", path_points_contest),
+    Scenario("fixed-or-floating", "fixed against floating z axis", fixed_or_floating_contest),
 )
 
 SCENARIOS: Final[Mapping[str, Scenario]] = MappingProxyType({row.name: row for row in _ROWS})

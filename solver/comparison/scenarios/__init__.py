@@ -1,1 +1,1 @@
-"""The scenarios, a file each, and what several of them share; `solver.comparison.registry` lists them."""
+"""The scenarios, a file each; `solver.comparison.registry` lists them."""
