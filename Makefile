@@ -28,6 +28,7 @@ pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
 	$(BIN)/prunus demo --output build/pictures
 	cp build/pictures/arm.png build/pictures/effort.png build/pictures/table.md docs/pictures/
 	$(BIN)/python -m app.pictures.weights docs/pictures/weights.png
+	$(BIN)/python -m app.pictures.strawberry docs/pictures/strawberry.png
 	$(BIN)/python scripts/update_readme.py
 
 openapi: $(VENV)/run.stamp       ## openapi/openapi.json, from the code

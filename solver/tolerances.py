@@ -537,8 +537,8 @@ MECHANISM_NLP_TOLERANCE: Final = 1e-10
 """Overall error of IPOPT on the mechanism's programme [J, m]: below INDEX_ROUNDING_J."""
 
 MECHANISM_NLP_BARRIER: Final = 1e-2
-"""IPOPT's first barrier parameter there [J]: a thousandth of an index of some 6 J, as the start is
-the reset, far from the optimum, and the default of 0.1 takes a third more iterations."""
+"""IPOPT's first barrier parameter there [J]: below a hundredth of an index of some 6 J. Over S's
+Table 3 the default of 0.1, and smaller ones, take about a tenth more iterations from the reset."""
 
 PRINTED_SAMPLES: Final = 721
 """Values of beta at which the printed problem P1 is looked at, 0.1 degrees apart."""

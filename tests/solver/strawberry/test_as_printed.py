@@ -1,6 +1,7 @@
 """Each misprint of S on its own, as as_printed.py shows it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -78,3 +79,11 @@ def test_p1_with_the_printed_sign_lands_on_the_maximum(target: Point) -> None:
     assert printed_index(MECHANISM, answer.posture) == pytest.approx(max(along))
     assert max(along) - min(along) > 0.1
     assert energy_index(MECHANISM, answer.posture) > answered(solve_ssas(MECHANISM, target)).index_j
+
+
+@pytest.mark.parametrize(("tip_weight_n", "beta_deg"), [(0.0, 0.0), (9.8, 0.0), (9.82, 73.0)])
+def test_on_which_end_p1_lands_depends_on_an_unknown(tip_weight_n: float, beta_deg: float) -> None:
+    """With theta = 0, dJ/ds10 = 9.81 + (9.81 - m3 g) tan(beta) / 2 [N] has no root in the range."""
+    mechanism = replace(MECHANISM, tip_weight_n=tip_weight_n)
+    answer = answered(solve_ssas_printed_without_30(mechanism, TARGETS[0]))
+    assert math.degrees(answer.posture.beta_rad) == pytest.approx(beta_deg, abs=1e-9)
