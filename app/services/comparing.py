@@ -10,10 +10,10 @@ import orjson
 from app.reports.html import comparison_to_html
 from app.reports.wire import comparison_to_wire
 from app.services.wire import parse_request, problem_from_wire
-from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest
 from solver.comparison.registry import SCENARIOS, find_scenario
 from solver.comparison.run import run_contest
+from solver.comparison.scenarios.own_request import request_contest
 from solver.exceptions import UnknownScenario
 
 REQUEST_SUFFIX = ".json"
@@ -50,21 +50,9 @@ def prepare(scenario: str, methods: Sequence[str] | None) -> Contest:
         return find_scenario(scenario).contest(methods)
     file = Path(scenario)
     if file.suffix.lower() == REQUEST_SUFFIX or file.is_file():
-        return _own_contest(file, methods)
+        problem = problem_from_wire(parse_request(file.read_bytes()))
+        return request_contest(problem, file.stem, methods)
     raise UnknownScenario(scenario, known=tuple(SCENARIOS))
-
-
-def _own_contest(file: Path, methods: Sequence[str] | None) -> Contest:
-    problem = problem_from_wire(parse_request(file.read_bytes()))
-    count = len(problem.targets)
-    return approach_contest(
-        problem,
-        chosen(method_variants(problem), methods),
-        scenario=file.stem,
-        title=f"{file.name}: {count} target{'s' if count > 1 else ''} for {problem.robot.name}",
-        origin=f"the request in {file.name}; every target from the start posture, untimed",
-        seeds=(problem.options.seed,),
-    )
 
 
 def compare_to_bytes(order: ComparisonOrder) -> tuple[bytes, str]:
