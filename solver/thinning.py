@@ -24,6 +24,9 @@ _BARE: Final = 50_000_000
 _FRUITING: Final = 50_000_000
 _PERIOD: Final = 130_000_000
 
+MOST_FAULTS: Final = 1000
+"""Nobody reads more, and a request may have hundreds of thousands of blossoms."""
+
 LONGEST_SEGMENT_M: Final = 100.0
 """A segment longer than any tree is a mistake of units [m]."""
 
@@ -91,18 +94,17 @@ def select_blossoms(branches: Sequence[BlossomBranch]) -> ThinningSelection:
     first and its last, and stays.
 
     Raises:
-        InvalidProblem: with every fault found; paths begin with "branches".
+        InvalidProblem: with the faults found, MOST_FAULTS at most; paths begin with "branches".
     """
-    if faults := tuple(_faults(branches)):
+    if faults := tuple(itertools.islice(_faults(branches), MOST_FAULTS)):
         raise InvalidProblem(faults)
     targets: list[PlacedBlossom] = []
     keepers: list[PlacedBlossom] = []
     for branch in branches:
         along = sorted(branch.blossoms, key=lambda blossom: blossom.distance_m)
         kept = _kept([blossom.distance_m for blossom in along])
-        points = np.asarray(branch.points_m, dtype=np.float64)
-        for k, blossom in enumerate(along):
-            (keepers if k in kept else targets).append(_placed(branch.id, points, blossom))
+        for k, blossom in enumerate(_placed(branch, along)):
+            (keepers if k in kept else targets).append(blossom)
     return ThinningSelection(tuple(targets), tuple(keepers))
 
 
@@ -120,15 +122,26 @@ def _nanometres(distance_m: float) -> int:
     return round(distance_m * _NANOMETRES)
 
 
-def _placed(branch_id: str, points: Array, blossom: Blossom) -> PlacedBlossom:
+def _placed(branch: BlossomBranch, along: Sequence[Blossom]) -> list[PlacedBlossom]:
+    """Blossoms of a branch in space, in ascending order of distance."""
+    points = np.asarray(branch.points_m, dtype=np.float64)
+    distances = np.array([blossom.distance_m for blossom in along], dtype=np.float64)
     lengths = _segment_lengths(points)
     begins = np.append(0.0, np.cumsum(lengths)[:-1])
-    k = int(np.searchsorted(begins, blossom.distance_m, side="right")) - 1
-    x, y, z = (points[k + 1] - points[k]) / lengths[k]
-    direction = (float(x), float(y), float(z))
-    x, y, z = points[k] + (blossom.distance_m - begins[k]) * np.array(direction)
-    position = (float(x), float(y), float(z))
-    return PlacedBlossom(blossom.id, branch_id, position, direction, blossom.distance_m)
+    segment = np.searchsorted(begins, distances, side="right") - 1
+    directions = (np.diff(points, axis=0) / lengths[:, None])[segment]
+    positions = points[segment] + (distances - begins[segment])[:, None] * directions
+    return [
+        PlacedBlossom(one.id, branch.id, _triple(position), _triple(direction), one.distance_m)
+        for one, position, direction in zip(
+            along, positions.tolist(), directions.tolist(), strict=True
+        )
+    ]
+
+
+def _triple(values: Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = values
+    return x, y, z
 
 
 def _segment_lengths(points: Array) -> Array:

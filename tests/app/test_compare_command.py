@@ -1,6 +1,7 @@
 """`prunus compare`: reports of scenarios and of one's own requests, and what it refuses."""
 
 import csv
+import io
 import json
 from pathlib import Path
 from typing import Any
@@ -54,7 +55,7 @@ def test_report_of_a_request_of_ones_own(tmp_path: Path) -> None:
     document = json.loads((folder / "report.json").read_text())
     assert document["scenario"] == EXAMPLE.stem
     assert all(row["solved"] for row in document["rows"])
-    lines = list(csv.DictReader((folder / "report.csv").open()))
+    lines = list(csv.DictReader(io.StringIO((folder / "report.csv").read_text())))
     assert [line["target_id"] for line in lines[::2]] == ["1", "2", "3", "4", "5"]
 
 

@@ -15,7 +15,7 @@ from tests.app.conftest import Server, assert_problem, running_server, wait_unti
 
 Body = dict[str, Any]
 QUICK: Body = {"scenario": "strawberry", "methods": ["as", "ncos"], "repeats": 1}
-# Half an hour of it, if nobody ends it.
+# A minute and more, if nobody ends it.
 LONG: Body = {"scenario": "strawberry", "methods": ["ncos"], "repeats": 1000}
 COMPLETE_S = 120
 

@@ -23,6 +23,7 @@ from bench.pictures import PICTURES
 from bench.results import read
 from hardware import exceptions
 from solver import Options, solve
+from solver.comparison.registry import SCENARIOS
 from solver.problem import RANGES
 from solver.registry import METHODS
 from solver.solution import REASON_CODES
@@ -69,6 +70,11 @@ def test_options_are_documented_with_their_defaults_and_ranges() -> None:
 def test_methods_are_documented() -> None:
     documented = {row[0] for row in rows("docs/task_definition.md")}
     assert set(METHODS) <= documented
+
+
+def test_scenarios_are_documented() -> None:
+    table = [row[:2] for row in rows("docs/scenarios.md", "Scenarios")[2:]]
+    assert table == [[row.name, row.title] for row in SCENARIOS.values()]
 
 
 def test_reason_codes_are_documented() -> None:

@@ -113,8 +113,8 @@ def kac_v_contest(methods: Sequence[str] | None) -> Contest:
         origin=f"{THESIS}, 3.1.1 and 3.1.3: height 1 m, scaffolds at 30 and 40 degrees, about 30 "
         "fruiting branches each from horizontal to nearly vertical. ASSUMED, as the drawing did "
         "not survive: the trunk divides at 0.2 m, the scaffold at 30 degrees leans towards the "
-        "arm, branches are straight, 23 cm long and turn by 144 degrees from one to the next, a blossom "
-        "every 3 cm.",
+        "arm, branches are straight, 23 cm long and turn by 144 degrees from one to the next, a "
+        "blossom every 3 cm.",
         notes=(
             f"The base is {BASE_TO_TRUNK_M:g} m from the trunk. The pattern removes {removed} "
             f"blossoms; the {len(problem.targets)} within twice the reach are targets. What is out "

@@ -28,7 +28,7 @@ SEED: Final = 20_123
 STARTS: Final = 20
 COUNTS: Final = (10, 20, 30, 40, 50)
 NARROW_TARGETS: Final = 5
-"""Targets with little room beside data set 3's, which no start of any count misses."""
+"""Targets with little room, beside data set 3's, which are reached from every start."""
 NARROW: Final = "narrow "
 START: Final = ", start "
 """Parts of target ids: which kind of target it is, and which random start."""
