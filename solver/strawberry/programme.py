@@ -23,6 +23,7 @@ from solver.strawberry.index import energy_index
 from solver.strawberry.mechanism import Mechanism, Point, Posture, posture_at
 from solver.strawberry.semi_analytic import solve_ssas
 from solver.tolerances import (
+    INDEX_ROUNDING_J,
     MECHANISM_NLP_BARRIER,
     MECHANISM_NLP_TOLERANCE,
     NLP_BOUND_PUSH,
@@ -46,13 +47,14 @@ def solve_ncos(mechanism: Mechanism, target: Point) -> Answer | Reason:
     """P2 from `ssas`'s posture, or from the reset where `ssas` has none.
 
     Returns:
-        The better of the programme's answer and its start, so never a worse index than `ssas`.
+        The programme's local minimum, or its start where that is better: never a worse index than
+        `ssas`, to INDEX_ROUNDING_J.
     """
     start = solve_ssas(mechanism, target)
     if isinstance(start, Reason):
         return solve_ncos_cold(mechanism, target)
     found = solve_programme(mechanism, target, start.posture)
-    if isinstance(found, Reason) or found.index_j > start.index_j:
+    if isinstance(found, Reason) or found.index_j > start.index_j + INDEX_ROUNDING_J:
         spent = 0 if isinstance(found, Reason) else found.iterations
         return Answer(start.posture, start.index_j, spent, "kept its start")
     return found

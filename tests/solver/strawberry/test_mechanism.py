@@ -24,12 +24,12 @@ DOCUMENT = (resources.files("solver.strawberry") / "mechanism.toml").read_bytes(
 def transform(axis: str, angle: float, move: tuple[float, float, float]) -> np.ndarray:
     """A move and then a turn about x or y."""
     cosine, sine = math.cos(angle), math.sin(angle)
-    turn = {
-        "x": [[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]],
-        "y": [[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]],
-    }[axis]
+    turns = {
+        "x": np.array([[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]),
+        "y": np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]]),
+    }
     matrix = np.eye(4)
-    matrix[:3, :3] = turn
+    matrix[:3, :3] = turns[axis]
     matrix[:3, 3] = move
     return matrix
 
