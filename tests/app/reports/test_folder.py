@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from app.reports import folder as module
 from app.reports.folder import OWN_FILES, check_folder, report_files, write_report
 from solver.comparison.run import run_contest
 from tests.solver.comparison.contests import small_contest
@@ -60,7 +59,7 @@ def test_half_a_report_is_never_there(
         if len(written) == 2:
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(module.os, "fsync", full_disk)
+    monkeypatch.setattr("os.fsync", full_disk)
     with pytest.raises(OSError, match="No space"):
         write_report(folder, FILES)
     assert names(tmp_path) == ({"report"} if exists else set())
