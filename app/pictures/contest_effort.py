@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from app.pictures.contest_times import method_style
+from app.pictures.contest_times import method_style, shown_targets
 from app.pictures.effort import angle_range, draw_curves
 from app.pictures.labels import plain_text
 from solver import Problem, Target
@@ -26,8 +26,8 @@ def can_draw_effort(problem: Problem) -> bool:
 
 
 def draw_contest_effort(comparison: Comparison, problem: Problem) -> Figure:
-    """One panel a target, for the first MOST_PANELS of them."""
-    targets = problem.targets[:MOST_PANELS]
+    """One panel a target, for MOST_PANELS of them at most."""
+    targets = shown_targets(comparison, problem.targets, MOST_PANELS)
     surveys = [survey_target(problem, target, problem.start) for target in targets]
     figure = Figure(figsize=(11, 1.3 + 2.3 * len(targets)), layout="constrained")
     panels = figure.subplots(len(targets), 1, sharex=True, squeeze=False)[:, 0]
@@ -48,7 +48,8 @@ def draw_contest_effort(comparison: Comparison, problem: Problem) -> Figure:
                 **method_style(comparison, row.method),
             )
         axes.set_ylabel(plain_text(f"target {target.id}"))
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
     panels[-1].set_xlabel("approach angle about the branch [°]")
     panels[-1].set_xlim(*angle_range(surveys))
     figure.supylabel(comparison.index_name.replace("$", r"\$"))

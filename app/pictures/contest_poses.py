@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from app.pictures.arm import draw_branch, draw_links, draw_pedestal
+from app.pictures.contest_times import shown_targets
 from app.pictures.labels import plain_text
 from solver import Problem
 from solver.comparison.result import Comparison
@@ -22,8 +23,8 @@ BORDER_M: Final = 0.03
 
 
 def draw_contest_poses(comparison: Comparison, problem: Problem) -> Figure:
-    """A panel a method with its postures at the first MOST_POSTURES targets, all to one scale."""
-    targets = problem.targets[:MOST_POSTURES]
+    """A panel a method with its postures at MOST_POSTURES targets at most, all to one scale."""
+    targets = shown_targets(comparison, problem.targets, MOST_POSTURES)
     shown = {target.id for target in targets}
     methods = [summary.method for summary in comparison.summaries]
     columns = min(COLUMNS, len(methods))
@@ -74,7 +75,10 @@ def _frame_box(axes: Axes3D, low: Array, high: Array) -> None:
 
 def _extent(comparison: Comparison, problem: Problem, shown: set[str]) -> tuple[Array, Array]:
     """The corners of the box that holds every posture, target and the base [m]."""
-    places = [np.zeros((1, 3)), np.array([target.position_m for target in problem.targets])]
+    places = [
+        np.zeros((1, 3)),
+        np.array([target.position_m for target in problem.targets if target.id in shown]),
+    ]
     for row in comparison.rows:
         if row.joints is not None and row.target_id in shown:
             frames = link_transforms(problem.robot, problem.mounted_tool, np.array(row.joints))

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from app.pictures.labels import plain_text
+from solver import Target
 from solver.comparison.result import Comparison, Row
 
 MARKERS: Final = ("o", "s", "^", "D", "v", "P", "*", "h", "<", ">")
@@ -23,6 +24,19 @@ def method_style(comparison: Comparison, method: str) -> dict[str, Any]:
     place = [summary.method for summary in comparison.summaries].index(method)
     colours = matplotlib.colormaps["tab10"]
     return {"color": colours(place % 10), "marker": MARKERS[place % len(MARKERS)]}
+
+
+def shown_targets(
+    comparison: Comparison, targets: Sequence[Target], most: int
+) -> tuple[Target, ...]:
+    """The targets that a picture has room for: the first ones that any method reaches.
+
+    Where there are fewer than `most` of them, so many are shown; where none, the first targets.
+    """
+    reached = {row.target_id for row in comparison.rows if row.solved}
+    if len(targets) <= most:
+        return tuple(targets)
+    return tuple([target for target in targets if target.id in reached] or targets)[:most]
 
 
 def draw_times(comparison: Comparison) -> Figure:

@@ -37,14 +37,22 @@ def _wanted(
     problem = contest.problem
     if problem is not None:
         count = len(problem.targets)
-        first = f" at the first {MOST_POSTURES} targets" if count > MOST_POSTURES else ""
+        first = (
+            f" at the first {MOST_POSTURES} targets that one reaches"
+            if count > MOST_POSTURES
+            else ""
+        )
         yield (
             POSES,
             f"The posture of each method{first}, a colour a target",
             lambda: draw_contest_poses(comparison, problem),
         )
         if can_draw_effort(problem):
-            first = f" of the first {MOST_PANELS} targets" if count > MOST_PANELS else ""
+            first = (
+                f" of the first {MOST_PANELS} targets that one reaches"
+                if count > MOST_PANELS
+                else ""
+            )
             yield (
                 EFFORT,
                 f"Effort against approach angle{first}: curves where a branch is feasible in the "
