@@ -6,7 +6,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, problem_answers
 from app.schemas.thinning_selections import ThinningSelectionAnswer, ThinningSelectionRequest
-from solver import Blossom, BlossomBranch, select_blossoms
+from solver import Blossom, BlossomBranch, ThinningSelection, select_blossoms
 
 router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"])
 
@@ -27,11 +27,21 @@ async def create_thinning_selection(request: Request) -> Response:
     Nothing is stored.
     """
     body = await json_body(request)
-    return Response(await run_in_threadpool(_select, body), media_type="application/json")
+    return Response(await run_in_threadpool(_answer, body), media_type="application/json")
 
 
-def _select(body: bytes) -> bytes:
-    request = ThinningSelectionRequest.model_validate_json(body)
+def _answer(body: bytes) -> bytes:
+    selection = select(ThinningSelectionRequest.model_validate_json(body))
+    # orjson writes dataclasses as objects, with the contract's names.
+    return orjson.dumps({"targets": selection.targets, "keepers": selection.keepers})
+
+
+def select(request: ThinningSelectionRequest) -> ThinningSelection:
+    """What a request's blossoms come to.
+
+    Raises:
+        InvalidProblem: with the faults found; no fault repeats what was sent.
+    """
     branches = [
         BlossomBranch(
             branch.id,
@@ -40,6 +50,4 @@ def _select(body: bytes) -> bytes:
         )
         for branch in request.branches
     ]
-    selection = select_blossoms(branches)
-    # orjson writes dataclasses as objects, with the contract's names.
-    return orjson.dumps({"targets": selection.targets, "keepers": selection.keepers})
+    return select_blossoms(branches)

@@ -44,11 +44,11 @@ def test_selection_is_what_the_contract_says(server: Server, body: Body) -> None
 
 
 def test_targets_can_be_planned(server: Server, body: Body) -> None:
-    """The whole way as docs/scenarios.md has it: three fields of each target go on."""
+    """The whole way as docs/task_definition.md has it: three fields of each target go on."""
     selection = server.client.post(PATH, json=body).json()
     fields = ("id", "position_m", "branch_direction")
     targets = [{name: target[name] for name in fields} for target in selection["targets"]]
-    plan = {"robot": "tabletop", "tool": "scaffold", "targets": targets}
+    plan: Body = {"robot": "tabletop", "tool": "scaffold", "targets": targets}
     plan["options"] = {"method": "ssas", "order": "independent", "include": ["path"]}
     answer = server.client.post("/v1/plans", json=plan)
     assert answer.status_code == 201, answer.text

@@ -14,6 +14,8 @@ from app.demo import MOST_ERROR_M
 from app.demo_request import demo_request
 from app.plan_table import HEADINGS, MEASURED_HEADINGS, plan_rows
 from app.routers.link import SERVICE_FAULT
+from app.routers.thinning_selections import select
+from app.schemas.thinning_selections import ThinningSelectionRequest
 from app.services import links
 from app.services.execution_record import EXECUTION_ERROR_CODES
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
@@ -75,6 +77,22 @@ def test_methods_are_documented() -> None:
 def test_scenarios_are_documented() -> None:
     table = [row[:2] for row in rows("docs/scenarios.md", "Scenarios")[2:]]
     assert table == [[row.name, row.title] for row in SCENARIOS.values()]
+
+
+def test_planned_share_of_the_model_tree_is_documented() -> None:
+    contest = SCENARIOS["kac-v"].contest(["ssas"])
+    (ssas,) = contest.entrants
+    count = len(contest.target_ids)
+    planned = sum(contest.account("ssas", k, ssas.solve(k)).solved for k in range(count))
+    text = " ".join((ROOT / "docs/scenarios.md").read_text(encoding="utf-8").split())
+    assert f"{planned} of {count} targets within twice the reach" in text
+    assert f"planned, {100 * planned / count:.0f} %" in text
+
+
+def test_example_of_the_5_8_pattern_is_a_request_with_an_answer() -> None:
+    (example,) = fences("docs/task_definition.md", "json")
+    request = ThinningSelectionRequest.model_validate_json(example)
+    assert select(request).targets
 
 
 def test_reason_codes_are_documented() -> None:
