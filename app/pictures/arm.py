@@ -60,14 +60,15 @@ def draw_arm(plan: Mapping[str, Any], problem: Problem) -> Figure:
     return figure
 
 
-def draw_branch(axes: Axes3D, targets: Sequence[Target]) -> None:
-    """The blossoms with their ids, a piece of each one's branch, and a line through them."""
+def draw_branch(axes: Axes3D, targets: Sequence[Target], *, joined: bool = True) -> None:
+    """The blossoms with their ids, a piece of each one's branch, and a line if it is one branch."""
     for target in targets:
         along = approach_frame(target.position_m, target.branch_direction).branch
         ends = np.array(target.position_m) + np.outer((-0.022, 0.022), along)
         axes.plot(*ends.T, color=BRANCH_COLOUR, linewidth=5, solid_capstyle="round", zorder=1)
     places = np.array([target.position_m for target in targets])
-    axes.plot(*places.T, color=BRANCH_COLOUR, linewidth=1, linestyle=":", zorder=1)
+    if joined:
+        axes.plot(*places.T, color=BRANCH_COLOUR, linewidth=1, linestyle=":", zorder=1)
     axes.scatter(*places.T, s=90, color=BLOSSOM_COLOUR, edgecolor="white", depthshade=False)
     for target, place in zip(targets, places, strict=True):
         axes.text(

@@ -36,7 +36,7 @@ def draw_contest_poses(comparison: Comparison, problem: Problem) -> Figure:
     low, high = _extent(comparison, problem, shown)
     for place, method in enumerate(methods):
         axes: Axes3D = figure.add_subplot(lines, columns, place + 1, projection="3d")
-        draw_branch(axes, targets)
+        draw_branch(axes, targets, joined=False)
         draw_pedestal(axes)
         missing = []
         for row in comparison.rows:

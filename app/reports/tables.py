@@ -215,8 +215,8 @@ def reading_notes(comparison: Comparison) -> tuple[str, ...]:
     notes = [
         "Index, margin and residuals are recomputed from the posture by the verifier, outside the "
         "time that is measured; no method's own figures are believed.",
-        f"Time is the median of up to {comparison.repeats} calls a target and method, after one "
-        "that is not counted.",
+        f"Time is the median of at most {comparison.repeats} timed calls of a method at a target, "
+        "after one that is not counted.",
         "A failure stays in every table and is charged: it counts against the solved share, ranks "
         "behind every answer in the quantiles of above best and increase (they read "
         f"“{FAILED}” where they fall on one), and “time charged”, a mean, takes it for "
