@@ -1,5 +1,6 @@
 """Comparisons over HTTP: taken on, run in a solver process, kept, shown as JSON and as a page."""
 
+import asyncio
 import os
 import signal
 import time
@@ -9,7 +10,10 @@ from typing import Any
 import httpx2
 import pytest
 
+from app.errors import ProblemError
 from app.reports.html import content_security_policy
+from app.services.comparisons import MOST_ACTIVE, ComparisonService
+from app.store import ComparisonStore
 from solver.comparison.registry import SCENARIOS
 from tests.app.conftest import Server, assert_problem, running_server, wait_until
 
@@ -134,6 +138,28 @@ def test_bodies_that_are_none(server: Server) -> None:
     assert_problem(post_raw("/v1/comparisons", content=b"not JSON"), 422)
     answer = post_raw("/v1/comparisons", content=b"{}", headers={"Content-Type": "text/plain"})
     assert_problem(answer, 415)
+
+
+class FullStore(ComparisonStore):
+    def __init__(self) -> None:
+        pass
+
+    def count_active(self) -> int:
+        return MOST_ACTIVE
+
+
+def test_more_than_anybody_waits_for_are_refused() -> None:
+    async def create() -> None:
+        # Neither is used before it is refused.
+        service = ComparisonService(FullStore(), None)  # type: ignore[arg-type]
+        try:
+            await service.create("strawberry", None, None)
+        finally:
+            await service.close()
+
+    with pytest.raises(ProblemError) as raised:
+        asyncio.run(create())
+    assert (raised.value.status, raised.value.code) == (503, "comparisons_full")
 
 
 @pytest.mark.parametrize("comparison_id", ["0" * 32, "nowhere", "%27"])
