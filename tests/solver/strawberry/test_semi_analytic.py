@@ -9,10 +9,10 @@ from solver.solution import Reason
 from solver.strawberry.analytic import outside_box, solve_as
 from solver.strawberry.angle_choice import CASE_1, CASE_2, STRAIGHT, angle_sets
 from solver.strawberry.index import energy_index, friction_loss, potential_rise
-from solver.strawberry.mechanism import Point, posture_at
+from solver.strawberry.mechanism import Point, Posture, forward_kinematics, posture_at
 from solver.strawberry.semi_analytic import pieces, slope_of, slopes_of, solve_ssas
 from solver.strawberry.verification import verify_answer
-from solver.tolerances import INDEX_ROUNDING_J
+from solver.tolerances import INDEX_ROUNDING_J, LIMIT_EXCESS_RAD
 from tests.solver.strawberry.places import MECHANISM, TARGETS, answered, near, reachable
 
 BETAS = np.linspace(*MECHANISM.beta, 4001).tolist()
@@ -63,6 +63,31 @@ def test_it_is_never_dearer_than_as(target: Point) -> None:
     assert answered(solve_ssas(MECHANISM, target)).index_j <= (
         answered(closed).index_j + INDEX_ROUNDING_J
     )
+
+
+@pytest.mark.parametrize("beta", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("theta", MECHANISM.theta)
+@pytest.mark.parametrize(
+    ("s21", "s32"),
+    [(MECHANISM.s21.lower, 0.2), (MECHANISM.s21.upper, 0.2), (0.5, MECHANISM.s32.lower)],
+)
+def test_where_thetas_own_limit_ends_a_case(
+    beta: float, theta: float, s21: float, s32: float
+) -> None:
+    """Targets at which theta would pass its limit at this beta, in the middle of s10's set.
+
+    Not with both slides at their ends: there the set is one point, which rounding may miss.
+    """
+    target = forward_kinematics(MECHANISM, Posture(0.3, s21, s32, theta, beta))
+    answer = answered(solve_ssas(MECHANISM, target))
+    found = verify_answer(MECHANISM, target, answer)
+    assert found.verification.accepted, found.verification.failures
+    assert answer.index_j <= least_on_a_grid(target) + INDEX_ROUNDING_J
+    for span, choice in pieces(MECHANISM, target):
+        for end in span:
+            reach = MECHANISM.l2_m + MECHANISM.l3_m * math.cos(end)
+            lower, upper = MECHANISM.theta
+            assert lower - LIMIT_EXCESS_RAD <= choice.theta(reach) <= upper + LIMIT_EXCESS_RAD
 
 
 def test_targets_near_the_limits_meet_every_case() -> None:
