@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 BENCH_VENV := .venv-bench
 BENCH_BIN := $(BENCH_VENV)/bin
 
-.PHONY: demo test check serve setup lock pictures openapi bench bench-quick bench-page clean
+.PHONY: demo test check serve setup lock pictures openapi reports bench bench-quick bench-page clean
 
 demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
@@ -28,7 +28,12 @@ pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
 	$(BIN)/prunus demo --output build/pictures
 	cp build/pictures/arm.png build/pictures/effort.png build/pictures/table.md docs/pictures/
 	$(BIN)/python -m app.pictures.weights docs/pictures/weights.png
+	$(BIN)/python -m app.pictures.strawberry docs/pictures/strawberry.png
 	$(BIN)/python scripts/update_readme.py
+
+reports: $(VENV)/run.stamp       ## the example reports in docs/reports, measured anew on a quiet machine
+	$(BIN)/prunus compare strawberry --output docs/reports/strawberry
+	$(BIN)/prunus compare data-set-3 --output docs/reports/data-set-3
 
 openapi: $(VENV)/run.stamp       ## openapi/openapi.json, from the code
 	$(BIN)/prunus export-openapi -o openapi/openapi.json

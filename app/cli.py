@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from app.compare_command import compare
 from app.refusals import fail
 from app.robot_commands import robot_commands
 
@@ -17,6 +18,7 @@ cli = typer.Typer(
     pretty_exceptions_enable=False,
 )
 cli.add_typer(robot_commands, name="robot")
+cli.command()(compare)
 
 
 def main() -> None:

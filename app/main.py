@@ -12,16 +12,28 @@ from starlette.concurrency import run_in_threadpool
 from app.body_limit import BodyLimitMiddleware
 from app.browser_guard import BrowserGuardMiddleware
 from app.errors import install_error_handlers
-from app.routers import executions, health, link, plans, robot_state, robots
+from app.routers import (
+    comparisons,
+    executions,
+    health,
+    link,
+    plans,
+    robot_state,
+    robots,
+    thinning_selections,
+)
 from app.routers.common import problem_answers
+from app.schemas.comparisons import ComparisonRequest
 from app.schemas.executions import ExecutionRequest
 from app.schemas.problem_details import ProblemDetails
 from app.schemas.requests import PlanRequest
+from app.schemas.thinning_selections import ThinningSelectionRequest
+from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
 from app.services.links import LinkService
 from app.services.solving import SolvingService
 from app.settings import Settings
-from app.store import ExecutionStore, PlanStore, open_engine
+from app.store import ComparisonStore, ExecutionStore, PlanStore, open_engine
 from app.version import prunus_version
 
 
@@ -41,7 +53,16 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
     app.add_middleware(BrowserGuardMiddleware, host=settings.host)
     install_error_handlers(app)
-    for module in (plans, executions, robots, robot_state, link, health):
+    for module in (
+        plans,
+        executions,
+        comparisons,
+        thinning_selections,
+        robots,
+        robot_state,
+        link,
+        health,
+    ):
         app.include_router(module.router)
     # FastAPI's documented way to extend the document is to replace this method.
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
@@ -60,11 +81,14 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     state.executions = ExecutionService(
         state.execution_store, state.store, state.solving, state.links
     )
+    state.comparisons = ComparisonService(ComparisonStore(engine), state.solving)
     try:
         await state.executions.end_interrupted()
+        await state.comparisons.end_interrupted()
         yield
     finally:
         await state.executions.close()
+        await state.comparisons.close()
         await run_in_threadpool(state.solving.close)
         await run_in_threadpool(engine.dispose)
 
@@ -77,6 +101,8 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
     for model, mode in (
         (PlanRequest, "validation"),
         (ExecutionRequest, "validation"),
+        (ComparisonRequest, "validation"),
+        (ThinningSelectionRequest, "validation"),
         (ProblemDetails, "serialization"),
     ):
         _, definitions = models_json_schema(

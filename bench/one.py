@@ -5,10 +5,10 @@ import time
 import traceback
 from pathlib import Path
 
-from bench.machine import machine
 from bench.measure import failed
 from bench.registry import SUBJECTS
 from bench.results import as_document, write
+from solver.comparison.machine import machine
 
 
 def main(name: str, folder: Path, quick: bool) -> bool:

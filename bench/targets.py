@@ -11,12 +11,9 @@ from app.demo_request import demo_request
 from solver import Options, Problem, Target, load_robot
 from solver.approach.batch import NO_BRANCH, closed_form_optima
 from solver.approach.frame import approach_frames
-from solver.kinematics.forward import forward_kinematics
+from solver.comparison.targets import drawn_at_edges, drawn_in_box
 
 Array = NDArray[np.float64]
-
-BOX = (0.05, -0.3, 0.05), (0.38, 0.3, 0.5)
-"""Corners of the box in front of the arm from which positions are drawn [m]."""
 
 
 @dataclass(frozen=True)
@@ -51,32 +48,14 @@ class TargetSet:
 
 def random_set(seed: int, count: int) -> TargetSet:
     """Targets anywhere in the box, branches in every direction; half have no approach."""
-    rng = np.random.default_rng(seed)
-    positions = rng.uniform(*BOX, (count, 3))
-    return TargetSet(positions, rng.normal(size=(count, 3)))
+    return TargetSet(*drawn_in_box(seed, count))
 
 
 def hard_set(seed: int, count: int) -> TargetSet:
-    """Targets at the edges of what the arm can do, all reached by some thinning posture.
-
-    They are where random postures put the tool: a third with a joint beside its limit, a third with
-    a nearly straight wrist, a third with a nearly stretched arm; branches lie along the tool's y.
-    """
+    """Targets at the edges of what the arm can do, all reached by some thinning posture."""
     problem = data_set_3().problem()
-    rng = np.random.default_rng(seed)
     margin = problem.options.limit_margin_rad
-    lower, upper = problem.robot.lower + margin, problem.robot.upper - margin
-    q = rng.uniform(lower, upper, (count, len(lower)))
-    beside = 10.0 ** rng.uniform(-5, -1, count)
-    k = np.arange(count)
-    joint, kind = rng.integers(len(lower), size=count), k % 3
-    at_limit = np.where(rng.random(count) < 0.5, lower[joint] + beside, upper[joint] - beside)
-    q[k[kind == 0], joint[kind == 0]] = at_limit[kind == 0]
-    signs = rng.choice((-1.0, 1.0), count)
-    q[kind == 1, 4] = (signs * beside)[kind == 1]
-    q[kind == 2, 2] = (signs * beside)[kind == 2]
-    poses = forward_kinematics(problem.robot, problem.mounted_tool, q)
-    return TargetSet(poses[:, :3, 3], poses[:, :3, 1])
+    return TargetSet(*drawn_at_edges(problem.robot, problem.mounted_tool, margin, seed, count))
 
 
 def together(*sets: TargetSet) -> TargetSet:

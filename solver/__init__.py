@@ -37,11 +37,20 @@ from solver.solution import (
     Trajectory,
     Transfer,
 )
+from solver.thinning import (
+    Blossom,
+    BlossomBranch,
+    PlacedBlossom,
+    ThinningSelection,
+    select_blossoms,
+)
 from solver.verification import verify, verify_plan
 
 __all__ = [
     "Approach",
     "Arc",
+    "Blossom",
+    "BlossomBranch",
     "Fault",
     "InvalidProblem",
     "InvalidRobot",
@@ -49,6 +58,7 @@ __all__ = [
     "Link",
     "Nearest",
     "Options",
+    "PlacedBlossom",
     "Plan",
     "Problem",
     "Reason",
@@ -58,6 +68,7 @@ __all__ = [
     "SolverError",
     "SolverReport",
     "Target",
+    "ThinningSelection",
     "Tool",
     "Trajectory",
     "Transfer",
@@ -71,6 +82,7 @@ __all__ = [
     "robot_names",
     "robot_to_toml",
     "robot_to_urdf",
+    "select_blossoms",
     "solve",
     "verify",
     "verify_plan",

@@ -54,6 +54,24 @@ class InvalidProblem(SolverError):
         self.faults = faults
 
 
+class UnknownScenario(SolverError):
+    """No scenario has this name."""
+
+    def __init__(self, name: str, *, known: tuple[str, ...]) -> None:
+        super().__init__(f"unknown scenario {name!r}; known: {', '.join(known)}")
+        self.name = name
+        self.known = known
+
+
+class UnknownEntrant(SolverError):
+    """A scenario has no method of this name."""
+
+    def __init__(self, name: str, *, known: tuple[str, ...]) -> None:
+        super().__init__(f"unknown method {name!r} in this scenario; known: {', '.join(known)}")
+        self.name = name
+        self.known = known
+
+
 class RetimingFailed(SolverError):
     """A chosen approach that does not hold any more: `detail` says what, of which target."""
 

@@ -9,6 +9,7 @@ from solver.approach.certificate import certify_task, is_infeasible
 from solver.approach.task import ApproachTask, approach_task
 from solver.cut_in import broken_limit, build_cut_in
 from solver.kinematics.families import has_closed_form
+from solver.methods.any_arm import Solve
 from solver.methods.candidate import Candidate
 from solver.problem import Problem, Target
 from solver.proposal import propose
@@ -100,7 +101,7 @@ def plan_target(
     task = approach_task(problem, target, reference)
     outcome: Candidate | Reason
     if stop is None:
-        outcome, task = _solve_between_rows_too(task)
+        outcome, task = solve_between_rows_too(task, METHODS[problem.options.method].solve)
     else:
         # A batch is planned as seen from the start; its efforts and their bounds count from here.
         outcome, task = stop.candidate, replace(stop.task, reference=task.reference)
@@ -121,17 +122,18 @@ def plan_target(
     return replace(judge(problem, approach, reference), arcs=arcs)
 
 
-def _solve_between_rows_too(task: ApproachTask) -> tuple[Candidate | Reason, ApproachTask]:
-    """The method's answer, with limits that hold between the rows of the cut-in as well.
+def solve_between_rows_too(
+    task: ApproachTask, solve: Solve
+) -> tuple[Candidate | Reason, ApproachTask]:
+    """A method's answer, with limits that hold between the rows of the cut-in as well.
 
     Also returns the task as it was solved last.
 
     A posture between two rows that breaks a limit becomes a row, and the target is solved again
     (the exchange method of semi-infinite programming).
     """
-    solve_task = METHODS[task.options.method].solve
     for _ in range(EXCHANGE_ROUNDS):
-        outcome = solve_task(task)
+        outcome = solve(task)
         if isinstance(outcome, Reason):
             return outcome, task
         retreat = broken_limit(task, outcome)

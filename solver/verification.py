@@ -79,12 +79,17 @@ def judge(problem: Problem, approach: Approach, reference: Sequence[float]) -> A
     verification = verify(problem, approach, reference)
     if verification.accepted:
         return replace(approach, status=PLANNED)
+    reason = refusal(verification)
+    return Approach(approach.target_id, INFEASIBLE, approach.solver, reason=reason)
+
+
+def refusal(verification: Verification) -> Reason:
+    """The reason why an approach is none: what of it did not verify."""
     failed = ", ".join(
         f"{residual.name} {residual.value:.3g} (allowed {residual.allowed:.3g})"
         for residual in verification.failures
     )
-    reason = Reason("solver_failed", f"the answer did not verify: {failed}")
-    return Approach(approach.target_id, INFEASIBLE, approach.solver, reason=reason)
+    return Reason("solver_failed", f"the answer did not verify: {failed}")
 
 
 def verify_plan(plan: Plan) -> dict[str, Verification]:

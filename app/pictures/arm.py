@@ -1,6 +1,6 @@
 """The arm in its thinning postures, with the branch, the approach circles and the cut-ins."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib
@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
+from app.pictures.labels import plain_text
 from app.pictures.references import planned_with_references
 from solver import Problem, Target
 from solver.approach.arcs import Arc, survey_target
@@ -35,19 +36,19 @@ def draw_arm(plan: Mapping[str, Any], problem: Problem) -> Figure:
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, max(len(steps), 1)))
     places = np.array([target.position_m for target in problem.targets])
     for axes in (whole, close):
-        _draw_branch(axes, problem)
+        draw_branch(axes, problem.targets)
         for (approach, target, reference), colour in zip(steps, colours, strict=False):
             arcs = survey_target(problem, target, reference).arcs
-            _draw_circle(axes, target, problem.options.standoff_m, arcs)
+            draw_circle(axes, target, problem.options.standoff_m, arcs)
             _draw_cut_in(axes, problem, approach, colour)
-            _draw_arm(axes, problem, approach, colour)
+            draw_links(axes, problem, approach["thinning_joints"], colour, approach["target_id"])
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
         axes.set_zlabel("z [m]")
-    _pedestal(whole)
+    draw_pedestal(whole)
     reach = float(np.abs(places).max()) + 0.05
-    _frame_cube(whole, np.array([reach / 2 - 0.1, 0.0, reach / 2]), reach / 2)
-    _frame_cube(close, places.mean(axis=0) - (0.0, 0.0, 0.015), 0.075)
+    frame_cube(whole, np.array([reach / 2 - 0.1, 0.0, reach / 2]), reach / 2)
+    frame_cube(close, places.mean(axis=0) - (0.0, 0.0, 0.015), 0.075)
     whole.view_init(elev=18, azim=-62)
     close.view_init(elev=14, azim=-35)
     whole.set_title(f"{len(steps)} thinning postures of {plan['robot']}", fontsize=13)
@@ -59,19 +60,24 @@ def draw_arm(plan: Mapping[str, Any], problem: Problem) -> Figure:
     return figure
 
 
-def _draw_branch(axes: Axes3D, problem: Problem) -> None:
-    for target in problem.targets:
+def draw_branch(axes: Axes3D, targets: Sequence[Target], *, joined: bool = True) -> None:
+    """The blossoms with their ids, a piece of each one's branch, and a line if it is one branch."""
+    for target in targets:
         along = approach_frame(target.position_m, target.branch_direction).branch
         ends = np.array(target.position_m) + np.outer((-0.022, 0.022), along)
         axes.plot(*ends.T, color=BRANCH_COLOUR, linewidth=5, solid_capstyle="round", zorder=1)
-    places = np.array([target.position_m for target in problem.targets])
-    axes.plot(*places.T, color=BRANCH_COLOUR, linewidth=1, linestyle=":", zorder=1)
+    places = np.array([target.position_m for target in targets])
+    if joined:
+        axes.plot(*places.T, color=BRANCH_COLOUR, linewidth=1, linestyle=":", zorder=1)
     axes.scatter(*places.T, s=90, color=BLOSSOM_COLOUR, edgecolor="white", depthshade=False)
-    for target, place in zip(problem.targets, places, strict=True):
-        axes.text(*(place + np.array((0.0, 0.0, 0.008))), target.id, fontsize=10, ha="center")
+    for target, place in zip(targets, places, strict=True):
+        axes.text(
+            *(place + np.array((0.0, 0.0, 0.008))), plain_text(target.id), fontsize=10, ha="center"
+        )
 
 
-def _draw_circle(axes: Axes3D, target: Target, radius_m: float, arcs: tuple[Arc, ...]) -> None:
+def draw_circle(axes: Axes3D, target: Target, radius_m: float, arcs: tuple[Arc, ...]) -> None:
+    """Where the standby of a target may be, feasible arcs in green."""
     frame = approach_frame(target.position_m, target.branch_direction)
     turn = np.linspace(-np.pi, np.pi, 121)
     axes.plot(*_standbys(target, frame, radius_m, turn).T, color=BLOCKED_COLOUR, linewidth=0.9)
@@ -95,12 +101,18 @@ def _draw_cut_in(
     axes.scatter(*places[0], s=28, color=[colour], depthshade=False)
 
 
-def _draw_arm(axes: Axes3D, problem: Problem, approach: Mapping[str, Any], colour: Array) -> None:
-    posture = np.array(approach["thinning_joints"])
-    frames = link_transforms(problem.robot, problem.mounted_tool, posture)
-    # The frames of joints 4 and 5 share the wrist centre; the elbow offset gets its own corner.
-    shoulder = frames[1, :3, 3]
-    corners = np.array([frames[0, :3, 3], (0.0, 0.0, shoulder[2]), shoulder, *frames[2:, :3, 3]])
+def draw_links(
+    axes: Axes3D, problem: Problem, joints: Sequence[float], colour: Any, label: str
+) -> None:
+    """The arm in one posture [rad or m], with its forks."""
+    frames = link_transforms(problem.robot, problem.mounted_tool, np.array(joints))
+    # A link goes along its joint's axis first, then sideways by a.
+    lengths = np.array([joint.a_m for joint in problem.robot.joints])
+    bends = frames[1:, :3, 3] - lengths[:, None] * frames[1:, :3, 0]
+    # The tool's frame is rolled against the last link, which has nothing to go sideways for.
+    bends[-1] = frames[-2, :3, 3]
+    corners = np.stack((bends, frames[1:, :3, 3]), axis=1).reshape(-1, 3)
+    corners = np.vstack((frames[0, :3, 3], corners))
     tool = frames[-1]
     palm = corners[-1] - FORK_LENGTH_M * tool[:3, 2]
     body = np.vstack((corners[:-1], palm))
@@ -110,7 +122,7 @@ def _draw_arm(axes: Axes3D, problem: Problem, approach: Mapping[str, Any], colou
         linewidth=4,
         alpha=0.75,
         solid_capstyle="round",
-        label=approach["target_id"],
+        label=plain_text(label),
     )
     axes.scatter(*corners[2:-1].T, s=34, color=[colour], edgecolor="white", depthshade=False)
     for side in (-1, 1):
@@ -119,7 +131,8 @@ def _draw_arm(axes: Axes3D, problem: Problem, approach: Mapping[str, Any], colou
         axes.plot(*fork.T, color=colour, linewidth=2, alpha=0.9)
 
 
-def _pedestal(axes: Axes3D) -> None:
+def draw_pedestal(axes: Axes3D) -> None:
+    """What the arm stands on."""
     angles = np.linspace(0, 2 * np.pi, 40)
     for height in (0.0, 0.02):
         axes.plot(
@@ -127,7 +140,8 @@ def _pedestal(axes: Axes3D) -> None:
         )
 
 
-def _frame_cube(axes: Axes3D, centre: Array, half: float) -> None:
+def frame_cube(axes: Axes3D, centre: Array, half: float) -> None:
+    """Show a cube about a centre [m]."""
     axes.set_xlim(centre[0] - half, centre[0] + half)
     axes.set_ylim(centre[1] - half, centre[1] + half)
     axes.set_zlim(centre[2] - half, centre[2] + half)

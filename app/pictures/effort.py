@@ -1,6 +1,6 @@
 """Effort against approach angle for each target, with the feasible arcs of every branch."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib
@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from app.pictures.labels import plain_text
 from app.pictures.references import planned_with_references
 from solver import Arc, Problem
 from solver.approach.arcs import Survey, survey_target
@@ -29,7 +30,7 @@ def draw_effort(plan: Mapping[str, Any], problem: Problem) -> Figure:
         _draw_panel(axes, approach, survey, problem.robot)
     unit = "rad" if plan["options"]["norm"] == "l1" else "rad²"
     panels[-1].set_xlabel("approach angle about the branch [°]")
-    panels[-1].set_xlim(*_angle_range(surveys))
+    panels[-1].set_xlim(*angle_range(surveys))
     figure.supylabel(f"effort [{unit}]")
     figure.suptitle(
         "Effort against approach angle: curves where a branch is feasible in the whole cut-in, "
@@ -39,7 +40,7 @@ def draw_effort(plan: Mapping[str, Any], problem: Problem) -> Figure:
     return figure
 
 
-def _angle_range(surveys: list[Survey]) -> tuple[float, float]:
+def angle_range(surveys: Sequence[Survey]) -> tuple[float, float]:
     """The angles at which anything is feasible, with a border, at most one turn [degrees]."""
     ends = [arc for survey in surveys for arc in survey.arcs]
     if not ends or max(arc.upper_rad for arc in ends) > np.pi:
@@ -49,7 +50,8 @@ def _angle_range(surveys: list[Survey]) -> tuple[float, float]:
     return max(low, -180.0), min(high, 180.0)
 
 
-def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey, robot: Robot) -> None:
+def draw_curves(axes: Axes, survey: Survey, robot: Robot) -> None:
+    """Effort over the angle, a curve a branch where it is feasible, and a bar for each arc."""
     feasible = [row for row in range(len(survey.curves)) if np.isfinite(survey.efforts[row]).any()]
     palette = matplotlib.colormaps["tab10"]
     degrees = np.degrees(survey.angles_rad)
@@ -66,6 +68,12 @@ def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey, robot: 
                 continue
             height = low - span * (BARS_BELOW + BAR_STEP * feasible.index(row))
             _draw_arc(axes, arc, height, colour, robot)
+    axes.grid(alpha=0.25)
+    axes.margins(y=0.12)
+
+
+def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey, robot: Robot) -> None:
+    draw_curves(axes, survey, robot)
     angle = np.degrees(approach["approach_angle_rad"])
     axes.plot(angle, approach["effort"], "o", color=CHOSEN_COLOUR, markersize=9, zorder=5)
     axes.annotate(
@@ -76,10 +84,8 @@ def _draw_panel(axes: Axes, approach: Mapping[str, Any], survey: Survey, robot: 
         ha="center",
         color=CHOSEN_COLOUR,
     )
-    axes.set_ylabel(f"target {approach['target_id']}")
-    axes.grid(alpha=0.25)
+    axes.set_ylabel(plain_text(f"target {approach['target_id']}"))
     axes.legend(loc="upper left", fontsize=8, ncols=2)
-    axes.margins(y=0.12)
 
 
 def _draw_arc(axes: Axes, arc: Arc, height: float, colour: Any, robot: Robot) -> None:

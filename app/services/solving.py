@@ -15,6 +15,7 @@ from typing import TypeVar
 import orjson
 
 from app.errors import ProblemError
+from app.services.comparing import ComparisonOrder, compare_to_bytes
 from app.services.motions import target_motions
 from app.services.wire import plan_to_wire
 from hardware.messages import Failure
@@ -119,6 +120,14 @@ class SolvingService:
         return await self._run(
             lambda pool: pool.submit(target_motions, request, answer, execution_id)
         )
+
+    async def compare(self, order: ComparisonOrder) -> tuple[bytes, str]:
+        """A comparison's JSON and page.
+
+        Raises:
+            SolverLost: the worker died over it.
+        """
+        return await self._run(lambda pool: pool.submit(compare_to_bytes, order))
 
     async def _run(self, submit: Callable[[ProcessPoolExecutor], Future[Result]]) -> Result:
         pool = self._pool

@@ -30,6 +30,7 @@ from solver import (
     Transfer,
     UnknownRobot,
 )
+from solver.strawberry.mechanism import NAME as STRAWBERRY
 
 BASE_FRAME = "base"
 
@@ -54,12 +55,20 @@ def problem_from_wire(request: PlanRequest) -> Problem:
     try:
         problem = _problem(given, load_instance(request.robot).robot)
     except UnknownRobot as error:
-        faults.append(Fault(("robot",), f"unknown robot; known: {', '.join(error.known)}"))
+        faults.append(Fault(("robot",), _why_unknown(error)))
     except InvalidProblem as error:
         faults += error.faults
     if faults:
         raise InvalidProblem(tuple(faults))
     return problem
+
+
+def _why_unknown(error: UnknownRobot) -> str:
+    if error.name == STRAWBERRY:
+        return (
+            "this mechanism has no approach to plan; compare its methods: prunus compare strawberry"
+        )
+    return f"unknown robot; known: {', '.join(error.known)}"
 
 
 def _problem(given: Mapping[str, Any], robot: Robot) -> Problem:

@@ -1,6 +1,6 @@
 """The tables; `migrations/` brings a database to them."""
 
-from sqlalchemy import Column, DateTime, Index, MetaData, String, Table, Text
+from sqlalchemy import Boolean, Column, DateTime, Index, MetaData, String, Table, Text
 
 METADATA = MetaData()
 
@@ -28,4 +28,16 @@ EXECUTIONS = Table(
     Column("active_robot", String(200), nullable=True, unique=True),
     Column("document", Text, nullable=False),
     Index("executions_by_age", "created_at", "id"),
+)
+
+COMPARISONS = Table(
+    "comparisons",
+    METADATA,
+    Column("id", String(32), primary_key=True),
+    Column("scenario", String(200), nullable=False),
+    Column("active", Boolean, nullable=False),
+    Column("created_at", DateTime(timezone=True), nullable=False),
+    Column("updated_at", DateTime(timezone=True), nullable=False),
+    Column("document", Text, nullable=False),
+    Column("page", Text, nullable=True),
 )

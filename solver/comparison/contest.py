@@ -4,10 +4,11 @@ What is timed (`Entrant.solve`) is apart from what judges it (`Contest.account`)
 pays for the verifier and none is believed.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from solver.exceptions import UnknownEntrant
 from solver.problem import Problem
 
 
@@ -79,6 +80,8 @@ class Contest:
         reference: the method that others are compared with.
         problem: the approach problem, where there is one; pictures are made from it.
         seeds: every seed that the targets depend on.
+        findings: what the accounts say about the scenario's question, a sentence each, from the
+            accounts by target id and entrant; None where there is no such question.
     """
 
     scenario: str
@@ -94,3 +97,21 @@ class Contest:
     reference: str = "ncos"
     problem: Problem | None = None
     seeds: tuple[int, ...] = ()
+    findings: Callable[[Mapping[tuple[str, str], Account]], tuple[str, ...]] | None = None
+
+
+def with_entrants(contest: Contest, names: Sequence[str] | None) -> Contest:
+    """The contest with the entrants of these names only, in its own order; as it is for None.
+
+    Raises:
+        UnknownEntrant: no entrant has one of the names.
+    """
+    if names is None:
+        return contest
+    known = tuple(entrant.name for entrant in contest.entrants)
+    for name in names:
+        if name not in known:
+            raise UnknownEntrant(name, known=known)
+    return replace(
+        contest, entrants=tuple(entrant for entrant in contest.entrants if entrant.name in names)
+    )

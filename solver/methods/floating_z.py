@@ -1,6 +1,6 @@
 """`floating_z`: T 3.4.2. Evenly spaced approach angles, all branches, the least effort wins."""
 
-from solver.approach.arcs import sample_angles, sample_task
+from solver.approach.arcs import sample_angles, sample_angles_of
 from solver.approach.frame import signed_angle
 from solver.approach.robustness import bears_uncertainty
 from solver.approach.task import ApproachTask
@@ -9,16 +9,21 @@ from solver.methods.candidate import Candidate
 from solver.solution import Reason
 
 
-def solve_floating_z(task: ApproachTask) -> Candidate | Reason:
+def solve_floating_z(task: ApproachTask, phase_rad: float = 0.0) -> Candidate | Reason:
     """The cheapest of `samples` approach angles whose whole cut-in is feasible.
 
-    Ties go to the smaller angle, then to tool side 1, then to the lower branch number. T starts its
-    angles at random; here phi_k = -pi + 2 pi k / n.
+    Ties go to the smaller angle, then to tool side 1, then to the lower branch number.
+
+    Args:
+        task: the target's task.
+        phase_rad: turns all angles, phi_k = phase - pi + 2 pi k / n [rad]. T starts them at random;
+            here they start at -pi unless a comparison asks for another start.
     """
     n = task.options.samples
+    angles = sample_angles(n) + phase_rad
     offers: list[tuple[float, float, int, int, float]] = []
     for side in task.tool_sides:
-        angles, margins, efforts = sample_task(task, side, n)
+        margins, efforts = sample_angles_of(task, side, angles)
         for branch, k in zip(*(margins >= 0).nonzero(), strict=True):
             angle = signed_angle(float(angles[k]))
             offers.append((float(efforts[branch, k]), abs(angle), -side, int(branch), angle))
@@ -26,4 +31,4 @@ def solve_floating_z(task: ApproachTask) -> Candidate | Reason:
         if bears_uncertainty(task, angle, -negative_side, branch):
             thinning = task.thinning_joints(angle, -negative_side, branch)
             return Candidate(angle, -negative_side, branch, thinning, cost, n, "best_of_samples")
-    return diagnose(task, sample_angles(n))
+    return diagnose(task, angles)

@@ -99,7 +99,7 @@ def solve_on_arc(
 def _solve_with_relaxations(task: ApproachTask, coupling: "_Coupling") -> Candidate | Reason:
     """The cheapest of the feasible corners and of what the programme makes of a few starts."""
     offers = [
-        _from_thinning(task, corner.tool_side, corner.branch, corner.thinning)
+        from_thinning(task, corner.tool_side, corner.branch, corner.thinning)
         for corner in corners(task)
     ]
     offers.sort(key=coupling.cost)
@@ -116,7 +116,7 @@ def _solve_with_relaxations(task: ApproachTask, coupling: "_Coupling") -> Candid
         statuses.append(answer.status)
         if answer.thinning is None:
             continue
-        offer = _from_thinning(task, answer.tool_side, answer.branch, answer.thinning)
+        offer = from_thinning(task, answer.tool_side, answer.branch, answer.thinning)
         if best is None or coupling.cost(offer) < coupling.cost(best):
             best = offer
     if best is not None and (kept is None or coupling.cost(best) <= coupling.cost(kept)):
@@ -156,7 +156,8 @@ def _at_angle(task: ApproachTask, warm_start: ArcOptimum, angle: float) -> Candi
     return _candidate(task, angle, arc.tool_side, arc.branch, thinning)
 
 
-def _from_thinning(task: ApproachTask, tool_side: int, branch: int, thinning: Array) -> Candidate:
+def from_thinning(task: ApproachTask, tool_side: int, branch: int, thinning: Array) -> Candidate:
+    """The candidate of a thinning posture on its branch, shape (joints,) [rad]; nothing spent."""
     pose = forward_kinematics(task.robot, task.tool, thinning)
     seen = placement(task.frame, np.asarray(task.target.position_m), tool_side, pose)
     joints = tuple(float(value) for value in thinning)

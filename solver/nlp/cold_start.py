@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections import Counter
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -10,11 +11,14 @@ import numpy as np
 from solver.approach.task import ApproachTask
 from solver.effort import posture_effort
 from solver.kinematics.forward import forward_kinematics
+from solver.methods.candidate import Candidate
+from solver.methods.ncos import from_thinning
 from solver.nlp.backends import solve_instance
 from solver.nlp.formulation import build_programme
 from solver.nlp.instance import Start, make_instance, placed, shape_of
-from solver.nlp.relaxed import pose_of
+from solver.nlp.relaxed import pose_of, solve_relaxed
 from solver.robots.model import Array
+from solver.solution import Reason
 from solver.tolerances import AXIS_ERROR_RAD, LIMIT_EXCESS_RAD, POSITION_ERROR_M
 
 
@@ -65,6 +69,35 @@ def cold_solve(task: ApproachTask, backend: str, starts: int, seed: int) -> Cold
             effort = posture_effort(postures[0], task.reference, task.joint_weights, options.norm)
             best = min(best, effort)
     return ColdResult(math.isfinite(best), time.perf_counter() - began, best)
+
+
+def solve_cold(task: ApproachTask, starts: int, seed: int) -> Candidate | Reason:
+    """`ncos` without its warm start: the cheapest of what seeded random starts lead to.
+
+    Starts are drawn as in `cold_solve`. Each goes on until the whole cut-in holds, and its answer
+    is put on the closed form, as with the relaxations.
+
+    Args:
+        task: the target's task, of an arm with a closed form.
+        starts: how many starts.
+        seed: of the random numbers.
+    """
+    rng = np.random.default_rng(seed)
+    iterations, endings = 0, Counter[str]()
+    best: Candidate | None = None
+    for _ in range(starts):
+        answer = solve_relaxed(task, _random_start(task, rng), None)
+        iterations += answer.iterations
+        endings[answer.status] += 1
+        if answer.thinning is None:
+            continue
+        offer = from_thinning(task, answer.tool_side, answer.branch, answer.thinning)
+        if best is None or offer.effort < best.effort:
+            best = offer
+    if best is None:
+        told = ", ".join(f"{status} ({count})" for status, count in sorted(endings.items()))
+        return Reason("solver_failed", f"none of {starts} random starts led to an approach: {told}")
+    return replace(best, iterations=iterations, status=f"best_of_{starts}_random_starts")
 
 
 def _random_start(task: ApproachTask, rng: np.random.Generator) -> Start:

@@ -171,6 +171,15 @@ def test_all_faults_at_once(server: Server, request_body: Body) -> None:
     assert pointers == {"#/tool", "#/frame", "#/options/norm"}
 
 
+def test_the_strawberry_mechanism_has_no_approach_and_says_what_it_has(
+    server: Server, request_body: Body
+) -> None:
+    answer = server.client.post("/v1/plans", json={**request_body, "robot": "strawberry"})
+    (error,) = assert_problem(answer, 422, "#/robot")["errors"]
+    assert "no approach" in error["detail"]
+    assert "prunus compare strawberry" in error["detail"]
+
+
 def test_what_needs_a_closed_form_is_refused_on_a_rail(server: Server) -> None:
     target = {"id": "1", "position_m": [0.5, 0.1, 0.4], "branch_direction": [0, 1, 0]}
     body: Body = {"robot": "puma560_rail", "targets": [target]}

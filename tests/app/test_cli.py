@@ -27,7 +27,16 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
 def test_help_names_the_commands() -> None:
     finished = run("--help")
     assert finished.returncode == 0
-    for command in ("serve", "plan", "demo", "worker", "calibrate", "servo-bus", "export-openapi"):
+    for command in (
+        "serve",
+        "plan",
+        "compare",
+        "demo",
+        "worker",
+        "calibrate",
+        "servo-bus",
+        "export-openapi",
+    ):
         assert command in finished.stdout
 
 

@@ -48,6 +48,7 @@ def test_a_database_of_the_first_version_keeps_its_plans(tmp_path: Path) -> None
     engine.dispose()
     with contextlib.closing(sqlite3.connect(tmp_path / "prunus.sqlite3")) as database:
         database.execute("DROP TABLE executions")
+        database.execute("DROP TABLE comparisons")
         database.execute("UPDATE alembic_version SET version_num = '0001'")
         database.commit()
     engine = open_engine(url)

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from bench.machine import machine
 from bench.measure import QUANTILES
 from bench.page import page
 from bench.registry import SUBJECTS, Subject
 from bench.results import as_document, read, rows_of, write
+from solver.comparison.machine import machine
 
 
 def test_every_file_has_a_row() -> None:

@@ -14,6 +14,8 @@ from app.demo import MOST_ERROR_M
 from app.demo_request import demo_request
 from app.plan_table import HEADINGS, MEASURED_HEADINGS, plan_rows
 from app.routers.link import SERVICE_FAULT
+from app.routers.thinning_selections import select
+from app.schemas.thinning_selections import ThinningSelectionRequest
 from app.services import links
 from app.services.execution_record import EXECUTION_ERROR_CODES
 from app.services.wire import parse_request, plan_to_wire, problem_from_wire
@@ -23,6 +25,7 @@ from bench.pictures import PICTURES
 from bench.results import read
 from hardware import exceptions
 from solver import Options, solve
+from solver.comparison.registry import SCENARIOS
 from solver.problem import RANGES
 from solver.registry import METHODS
 from solver.solution import REASON_CODES
@@ -69,6 +72,27 @@ def test_options_are_documented_with_their_defaults_and_ranges() -> None:
 def test_methods_are_documented() -> None:
     documented = {row[0] for row in rows("docs/task_definition.md")}
     assert set(METHODS) <= documented
+
+
+def test_scenarios_are_documented() -> None:
+    table = [row[:2] for row in rows("docs/scenarios.md", "Scenarios")[2:]]
+    assert table == [[row.name, row.title] for row in SCENARIOS.values()]
+
+
+def test_planned_share_of_the_model_tree_is_documented() -> None:
+    contest = SCENARIOS["kac-v"].contest(["ssas"])
+    (ssas,) = contest.entrants
+    count = len(contest.target_ids)
+    planned = sum(contest.account("ssas", k, ssas.solve(k)).solved for k in range(count))
+    text = " ".join((ROOT / "docs/scenarios.md").read_text(encoding="utf-8").split())
+    assert f"{planned} of {count} targets within twice the reach" in text
+    assert f"planned, {100 * planned / count:.0f} %" in text
+
+
+def test_example_of_the_5_8_pattern_is_a_request_with_an_answer() -> None:
+    (example,) = fences("docs/task_definition.md", "json")
+    request = ThinningSelectionRequest.model_validate_json(example)
+    assert select(request).targets
 
 
 def test_reason_codes_are_documented() -> None:

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from solver import Options, Problem, Robot, Target
+from solver.comparison.targets import as_targets, drawn_in_box
 
 # F. Ouyang, thesis, 2012, program listing, data set 3 (cm there, m here).
 DATA_SET_3 = (
@@ -43,10 +42,4 @@ def in_front_of(arm: Robot, targets: Sequence[Target]) -> list[Target]:
 
 def random_targets(seed: int, count: int) -> list[Target]:
     """Targets in a box in front of the arm, branches in every direction; many are unreachable."""
-    rng = np.random.default_rng(seed)
-    positions = rng.uniform((0.05, -0.3, 0.05), (0.38, 0.3, 0.5), (count, 3))
-    directions = rng.normal(size=(count, 3))
-    return [
-        Target(str(k), tuple(position), tuple(direction))
-        for k, (position, direction) in enumerate(zip(positions, directions, strict=True))
-    ]
+    return list(as_targets(*drawn_in_box(seed, count), range(count)))

@@ -5,10 +5,10 @@ import platform
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-PACKAGES = (
-    "numpy", "numba", "casadi", "qpsolvers", "osqp", "daqp", "piqp", "scipy",
+PACKAGES: Final = (
+    "prunus", "numpy", "numba", "casadi", "qpsolvers", "osqp", "daqp", "piqp", "scipy",
     "py-opw-kinematics", "eaik",
 )  # fmt: skip
 

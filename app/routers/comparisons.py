@@ -1,0 +1,102 @@
+"""Comparisons of methods, and the scenarios that there are."""
+
+import orjson
+from fastapi import APIRouter, Request, Response
+from pydantic import MISSING
+
+from app.reports.html import content_security_policy
+from app.routers.common import body_of, json_body, problem_answers
+from app.schemas.comparisons import (
+    ComparisonAnswer,
+    ComparisonRequest,
+    ScenarioAnswer,
+    ScenariosAnswer,
+)
+from app.services.comparisons import ComparisonService
+from solver.comparison.registry import SCENARIOS
+
+HTML = "text/html"
+
+router = APIRouter(prefix="/v1", tags=["comparisons"])
+
+
+@router.get(
+    "/scenarios",
+    operation_id="listScenarios",
+    summary="All scenarios that methods can be compared on",
+    responses={200: {"model": ScenariosAnswer}, **problem_answers(500)},
+)
+def list_scenarios() -> Response:
+    """By name, with a line on each."""
+    answer = ScenariosAnswer(
+        scenarios=[ScenarioAnswer(name=row.name, title=row.title) for row in SCENARIOS.values()]
+    )
+    return Response(answer.model_dump_json(), media_type="application/json")
+
+
+@router.post(
+    "/comparisons",
+    operation_id="createComparison",
+    status_code=202,
+    summary="Compare methods on a scenario",
+    responses={
+        202: {
+            "model": ComparisonAnswer,
+            "headers": {"Location": {"schema": {"type": "string"}}},
+        },
+        **problem_answers(413, 415, 422, 500, 503),
+    },
+    openapi_extra=body_of(ComparisonRequest),
+)
+async def create_comparison(request: Request) -> Response:
+    """It is queued; comparisons run one after the other, about a minute each."""
+    given = ComparisonRequest.model_validate_json(await json_body(request))
+    document = await _service(request).create(
+        given.scenario,
+        None if given.methods is MISSING else tuple(given.methods),
+        None if given.repeats is MISSING else given.repeats,
+    )
+    return Response(
+        orjson.dumps(document),
+        202,
+        media_type="application/json",
+        headers={"Location": f"/v1/comparisons/{document['id']}"},
+    )
+
+
+@router.get(
+    "/comparisons/{comparison_id}",
+    operation_id="getComparison",
+    summary="How a comparison stands, and its result",
+    responses={
+        200: {
+            "model": ComparisonAnswer,
+            "content": {HTML: {"schema": {"type": "string"}}},
+            "description": f"With Accept: {HTML} the report as a page",
+        },
+        **problem_answers(404, 500),
+    },
+)
+async def get_comparison(comparison_id: str, request: Request) -> Response:
+    """As JSON; as a page for browsers, which loads itself again until there is a report."""
+    headers = {"Vary": "Accept"}
+    if _wants_page(request.headers.get("accept", "")):
+        page = await _service(request).page(comparison_id)
+        headers |= {
+            "Content-Security-Policy": f"{content_security_policy()}; frame-ancestors 'none'",
+            "X-Content-Type-Options": "nosniff",
+        }
+        return Response(page, media_type=HTML, headers=headers)
+    document = await _service(request).document(comparison_id)
+    return Response(orjson.dumps(document), media_type="application/json", headers=headers)
+
+
+def _wants_page(accept: str) -> bool:
+    kinds = [part.partition(";")[0].strip() for part in accept.lower().split(",")]
+    wanted = [kind for kind in kinds if kind in (HTML, "application/json")]
+    return wanted[:1] == [HTML]
+
+
+def _service(request: Request) -> ComparisonService:
+    service: ComparisonService = request.app.state.comparisons
+    return service

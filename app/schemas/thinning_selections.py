@@ -1,0 +1,56 @@
+"""Bodies of thinning selections: blossoms along branches, and which of them go.
+
+Structure and types only: what a value may be, `solver.thinning` decides. Clients must expect new
+fields in answers.
+"""
+
+from typing import Annotated
+
+from pydantic import BaseModel, Field
+
+from app.schemas.requests import StrictBody, Vector
+
+
+class BlossomBody(StrictBody):
+    """A blossom on a branch."""
+
+    id: str = Field(description="not empty, once among all branches of the request")
+    distance_m: float = Field(
+        description="along the branch from its origin: 0 to the branch's length"
+    )
+
+
+class BlossomBranchBody(StrictBody):
+    """A branch as a polyline from its origin to its tip, in the robot's base frame."""
+
+    id: str = Field(description="not empty, once in a request")
+    points_m: Annotated[
+        list[Vector],
+        Field(fail_fast=True, description="two or more; neighbours 1e-6 to 100 m apart"),
+    ]
+    blossoms: Annotated[list[BlossomBody], Field(fail_fast=True, description="in any order")]
+
+
+class ThinningSelectionRequest(StrictBody):
+    """Branches with their blossoms."""
+
+    branches: Annotated[list[BlossomBranchBody], Field(fail_fast=True, description="at least one")]
+
+
+class PlacedBlossomAnswer(BaseModel):
+    """A blossom with its place in space."""
+
+    id: str = Field(description="the blossom's")
+    branch_id: str
+    position_m: list[float] = Field(description="three numbers, on the branch")
+    branch_direction: list[float] = Field(
+        description="three numbers: the unit tangent towards the tip"
+    )
+    distance_m: float = Field(description="along the branch from its origin, as sent")
+
+
+class ThinningSelectionAnswer(BaseModel):
+    """Every blossom of the request, branch by branch as sent, from origin to tip."""
+
+    targets: list[PlacedBlossomAnswer] = Field(description="what is removed")
+    keepers: list[PlacedBlossomAnswer] = Field(description="what stays")

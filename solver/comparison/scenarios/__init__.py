@@ -1,0 +1,1 @@
+"""The scenarios, a file each; `solver.comparison.registry` lists them."""
