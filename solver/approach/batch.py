@@ -81,10 +81,19 @@ def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
     Raises:
         UnsupportedKinematics: the robot has no closed form.
     """
+    return arcs_of_packed(problem, packed_problem(problem))
+
+
+def packed_problem(problem: Problem) -> Array:
+    """A problem's own targets seen from its start posture, shape (sides, n, NUMBERS)."""
+    positions = np.array([target.position_m for target in problem.targets], dtype=np.float64)
+    directions = np.array([target.branch_direction for target in problem.targets], dtype=np.float64)
+    return packed_targets(problem, positions, directions, np.asarray(problem.start))
+
+
+def arcs_of_packed(problem: Problem, numbers: Array) -> dict[str, tuple[Arc, ...]]:
+    """`feasible_arcs` for targets that are packed already."""
     targets, options = problem.targets, problem.options
-    positions = np.array([target.position_m for target in targets], dtype=np.float64)
-    directions = np.array([target.branch_direction for target in targets], dtype=np.float64)
-    numbers = packed_targets(problem, positions, directions, np.asarray(problem.start))
     retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
     table = arcs_of_many(numbers, retreats, jump_cosines(retreats))
     found: dict[str, list[Arc]] = {target.id: [] for target in targets}
@@ -114,17 +123,14 @@ class ChosenPaths:
 
 
 def chosen_paths(
-    problem: Problem, targets: Sequence[Target], arcs: Sequence[Arc], angles_rad: Array
+    problem: Problem, numbers: Array, arcs: Sequence[Arc], angles_rad: Array
 ) -> ChosenPaths:
-    """The cut-ins of n targets, each on an arc of its own at an angle, shape (n,) [rad]."""
+    """The cut-ins of n packed targets, each on an arc of its own at an angle, shape (n,) [rad]."""
     options = problem.options
-    positions = np.array([target.position_m for target in targets], dtype=np.float64)
-    directions = np.array([target.branch_direction for target in targets], dtype=np.float64)
-    numbers = packed_targets(problem, positions, directions, np.asarray(problem.start))
     sides = np.array([(1 - arc.tool_side) // 2 for arc in arcs])
     branches = np.array([arc.branch for arc in arcs])
     retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
-    n = len(targets)
+    n = len(arcs)
     joints, suspicious = np.empty((n, len(retreats), 6)), np.empty(n, dtype=np.bool_)
     own = np.ascontiguousarray(numbers[sides, np.arange(n)])
     paths_of_many(own, branches, angles_rad, retreats, jump_cosines(retreats), joints, suspicious)

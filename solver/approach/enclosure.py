@@ -42,8 +42,10 @@ def _arm(g, x, y, z, branch):
     across_squared = j_add(j_square(x), j_square(y))
     across = j_root(across_squared)
     forward = across
+    beside = math.inf
     if g.shoulder != 0.0:
         forward = j_root(j_subtract(across_squared, j_square(number(g.shoulder))))
+        beside = across[0][1] - abs(g.shoulder)
     if branch // 4 == 1:
         forward = j_scale(-1.0, forward)
     theta1 = j_subtract(j_arc_tangent(y, x), j_arc_tangent(number(-g.sign1 * g.shoulder), forward))
@@ -51,11 +53,7 @@ def _arm(g, x, y, z, branch):
     s = j_scale(g.sign1, j_subtract(z, number(g.d1)))
     squared = j_add(j_square(r), j_square(s))
     distance = j_root(squared)
-    reach = min(
-        g.a2 + g.l3 - distance[0][0],
-        distance[0][1] - abs(g.a2 - g.l3),
-        across[0][1] - abs(g.shoulder),
-    )
+    reach = min(g.a2 + g.l3 - distance[0][0], distance[0][1] - abs(g.a2 - g.l3))
     links = j_add(j_square(number(g.a2)), j_square(number(g.l3)))
     cos_gamma = j_scale(1.0 / (2.0 * g.a2 * g.l3), j_subtract(squared, links))
     gamma = j_arc_cosine(widened(cos_gamma, ENCLOSURE_ROUNDING))
@@ -67,7 +65,13 @@ def _arm(g, x, y, z, branch):
     at_wrist = j_arc_tangent(j_scale(g.a2, sine), j_add(number(g.l3), j_scale(g.a2, cosine)))
     theta2 = j_subtract(elevation, at_shoulder)
     theta3 = j_subtract(gamma, number(g.beta))
-    return theta1, theta2, theta3, j_subtract(j_add(elevation, at_wrist), number(g.beta)), reach
+    return (
+        theta1,
+        theta2,
+        theta3,
+        j_subtract(j_add(elevation, at_wrist), number(g.beta)),
+        min(reach, beside),
+    )
 
 
 @kernel

@@ -175,10 +175,9 @@ def arm_turns(g, cx, cy, cz, shoulder):
     rho2 = cx * cx + cy * cy
     facing = 1.0 - 2.0 * shoulder
     x = facing * math.sqrt(max(rho2 - g.shoulder * g.shoulder, 0.0))
-    inverse_rho2 = 1.0 / max(rho2, TINY_M2)
-    away = rho2 > TINY_M2
-    cos1 = (cx * x - g.sign1 * g.shoulder * cy) * inverse_rho2 if away else facing
-    sin1 = (cy * x + g.sign1 * g.shoulder * cx) * inverse_rho2 if away else 0.0
+    away, divisor = rho2 > TINY_M2, max(rho2, TINY_M2)
+    cos1 = (cx * x - g.sign1 * g.shoulder * cy) / divisor if away else facing
+    sin1 = (cy * x + g.sign1 * g.shoulder * cx) / divisor if away else 0.0
     r, s = x - g.a1, g.sign1 * (cz - g.d1)
     d2 = r * r + s * s
     distance = math.sqrt(d2)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from solver.approach.arcs import Arc, sample_task
+from solver.approach.batch import packed_problem
 from solver.approach.task import approach_task
 from solver.methods.semi_analytic import best_on_arcs
 from solver.problem import Problem
@@ -17,8 +18,8 @@ def even_ladder_effort(problem: Problem, angles: int) -> tuple[float, int]:
     kept whose whole cut-in is feasible, then the cheapest chain. Targets without such an angle are
     left out: their number tells whether two efforts may be compared.
     """
-    tasks, arcs = [], []
-    for target in problem.targets:
+    tasks, arcs, reached = [], [], []
+    for k, target in enumerate(problem.targets):
         task = approach_task(problem, target, problem.start)
         own = []
         for side in task.tool_sides:
@@ -30,9 +31,11 @@ def even_ladder_effort(problem: Problem, angles: int) -> tuple[float, int]:
         if own:
             tasks.append(task)
             arcs.append(own)
+            reached.append(k)
     if not tasks:
         return 0.0, 0
-    effort = refined_ladder(gather(tasks, arcs), np.arange(len(tasks)), 1.0, 1, 0)[2]
+    batch = gather(problem, packed_problem(problem)[:, reached], arcs)
+    effort = refined_ladder(batch, np.arange(len(tasks)), 1.0, 1, 0)[2]
     return float(effort), len(tasks)
 
 

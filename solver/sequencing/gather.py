@@ -1,45 +1,46 @@
-"""From tasks with their feasible arcs to a batch for the kernels."""
+"""From targets with their feasible arcs to a batch for the kernels."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from solver.approach.arcs import Arc
-from solver.approach.task import ApproachTask
+from solver.approach.packed import LOWER, UPPER, jump_cosines
+from solver.problem import Problem
+from solver.robots.model import Array
 from solver.sequencing.batch import Batch
 
 
-def gather(tasks: Sequence[ApproachTask], arcs: Sequence[Sequence[Arc]]) -> Batch:
-    """The batch of some tasks, all of one problem and seen from its start posture.
+def gather(problem: Problem, numbers: Array, arcs: Sequence[Sequence[Arc]]) -> Batch:
+    """The batch of some targets of a problem, from its start posture.
 
     Args:
-        tasks: at least one.
-        arcs: the feasible arcs of each; one without length is a single approach.
+        problem: robot, tool and options; its own targets play no part.
+        numbers: the targets as `packed_targets` packs them, shape (sides, n, NUMBERS).
+        arcs: the feasible arcs of each, n of them; one without length is a single approach.
     """
-    shared = tasks[0].for_kernels(1)
-    sides = tasks[0].tool_sides
-    frames = np.empty((len(sides) * len(tasks), 12))
-    for k, task in enumerate(tasks):
-        for s, side in enumerate(sides):
-            own = task.for_kernels(side)
-            frames[len(sides) * k + s] = np.concatenate(
-                (own.position, own.y_axis, own.outward, own.sideways)
-            )
+    options, sides = problem.options, len(numbers)
     rows = [
-        (len(sides) * k + sides.index(arc.tool_side), arc.branch, arc.lower_rad, arc.upper_rad)
+        (sides * k + (1 - arc.tool_side) // 2, arc.branch, arc.lower_rad, arc.upper_rad)
         for k, own in enumerate(arcs)
         for arc in own
     ]
     table = np.array(rows, dtype=np.float64).reshape(-1, 4)
-    weights = shared.weights
+    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    weights, squared = np.asarray(problem.joint_weights), options.norm == "l2"
+    scale = np.sqrt(weights) if squared else weights
+    limits = numbers[0, 0]
     return Batch(
-        task=shared,
-        frames=frames,
+        numbers=np.ascontiguousarray(np.swapaxes(numbers, 0, 1).reshape(-1, numbers.shape[2])),
+        retreats=retreats,
+        cos_steps=jump_cosines(retreats),
         arc_frames=np.ascontiguousarray(table[:, 0], dtype=np.int64),
         arc_branches=np.ascontiguousarray(table[:, 1], dtype=np.int64),
         arc_lower=np.ascontiguousarray(table[:, 2]),
         arc_upper=np.ascontiguousarray(table[:, 3]),
         first_arc=np.concatenate(([0], np.cumsum([len(own) for own in arcs]))).astype(np.int64),
-        scale=np.sqrt(weights) if shared.squared else weights,
-        turning=bool(np.any(shared.upper - shared.lower >= 2 * np.pi)),
+        scale=scale,
+        start=scale * np.asarray(problem.start),
+        squared=squared,
+        turning=bool(np.any(limits[UPPER : UPPER + 6] - limits[LOWER : LOWER + 6] >= 2 * np.pi)),
     )

@@ -135,8 +135,8 @@ def refined_ladder(batch, order, step, most, rounds):
         Arcs and angles of the chain, shape (n,) each, and its effort.
     """
     layers, arcs, places, pieces = even_nodes(batch, order, step)
-    start = (batch.scale * batch.task.reference).reshape(6, 1)
-    squared = batch.task.squared
+    start = batch.start.reshape(6, 1)
+    squared = batch.squared
     angles = node_angles(batch, arcs, places, pieces)
     thinning, standby = np.empty((6, len(arcs))), np.empty((6, len(arcs)))
     arc_postures(batch, arcs, angles, thinning, standby)

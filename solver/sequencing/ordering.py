@@ -65,13 +65,13 @@ def coarse_nodes(batch: Batch, step: float) -> Nodes:
     thinning, standby = np.empty((6, len(arcs))), np.empty((6, len(arcs)))
     arc_postures(batch, arcs, angles, thinning, standby)
     return Nodes(
-        start=np.ascontiguousarray((batch.scale * batch.task.reference).reshape(6, 1)),
+        start=np.ascontiguousarray(batch.start.reshape(6, 1)),
         thinning=thinning,
         standby=standby,
         thinning_rows=np.ascontiguousarray(thinning.T),
         standby_rows=np.ascontiguousarray(standby.T),
         first=first,
-        squared=bool(batch.task.squared),
+        squared=bool(batch.squared),
     )
 
 

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from solver.compiled import kernel
-from solver.sequencing.batch import one_approach
+from solver.sequencing.batch import arc_postures
 from solver.tolerances import (
     CHAIN_GAIN_RELATIVE,
     CHAIN_MU_FACTOR,
@@ -36,26 +36,27 @@ def polished(batch, arcs, angles):
         angles: where to begin, shape (n,) [rad].
     """
     n = len(arcs)
-    start = batch.scale * batch.task.reference
-    thinning, standby = np.empty((n, 3, 6)), np.empty((n, 3, 6))
-    scratch = np.empty((len(batch.task.retreats), 6))
+    # By coefficient, joint and target; a target's `before` is what the chain comes from.
+    thinning, before = np.empty((3, 6, n)), np.zeros((3, 6, n))
+    before[0, :, 0] = batch.start
     best = angles.copy()
     stages, tried_stages, model_stages = np.empty(n), np.empty(n), np.empty(n)
-    _stage_efforts(batch, arcs, best, start, scratch, stages)
-    reach = np.full(n, CHAIN_REACH_RAD)
+    _stage_efforts(batch, arcs, best, stages)
+    reach, last = np.full(n, CHAIN_REACH_RAD), np.empty((3, 6, 1))[:, :, 0]
     moved = np.ones(n, dtype=np.bool_)
     width = CHAIN_REACH_RAD
     for _ in range(CHAIN_ROUNDS):
         for k in range(n):
             if moved[k]:
-                _parabolas(batch, arcs[k], best[k], scratch, thinning[k], standby[k])
-        step = _model_minimum(batch, arcs, best, start, thinning, standby, reach, width)
+                behind = before[:, :, k + 1] if k + 1 < n else last
+                _parabolas(batch, arcs[k], best[k], thinning[:, :, k], behind)
+        step = _model_minimum(batch, arcs, best, thinning, before, reach, width)
         width = max(np.abs(step).max(), CHAIN_MU_LEAST)
-        _model_efforts(thinning, standby, start, step, batch.task.squared, 0.0, model_stages)
+        _model_efforts(thinning, before, step, batch.squared, 0.0, model_stages)
         tried = best + step
         for k in range(n):
             tried[k] = min(max(tried[k], batch.arc_lower[arcs[k]]), batch.arc_upper[arcs[k]])
-        _stage_efforts(batch, arcs, tried, start, scratch, tried_stages)
+        _stage_efforts(batch, arcs, tried, tried_stages)
         cost = stages.sum()
         expected, gain = cost - model_stages.sum(), cost - tried_stages.sum()
         errors = np.abs(tried_stages - model_stages)
@@ -82,62 +83,69 @@ def _adapt_reach(reach, errors, allowed, shorter):
 
 
 @kernel
-def _stage_efforts(batch, arcs, angles, start, scratch, stages):
+def _stage_efforts(batch, arcs, angles, stages):
     """Writes the effort of reaching each approach of a chain."""
-    at_target, behind = np.empty(6), np.empty(6)
-    before = start.copy()
-    for k in range(len(arcs)):
-        one_approach(batch, arcs[k], angles[k], scratch, at_target, behind)
+    n = len(arcs)
+    thinning, standby = np.empty((6, n)), np.empty((6, n))
+    arc_postures(batch, arcs, angles, thinning, standby)
+    for k in range(n):
         stages[k] = 0.0
         for i in range(6):
-            change = abs(at_target[i] - before[i])
-            stages[k] += change * change if batch.task.squared else change
-            before[i] = behind[i]
+            change = abs(thinning[i, k] - (standby[i, k - 1] if k > 0 else batch.start[i]))
+            stages[k] += change * change if batch.squared else change
 
 
 @kernel
-def _parabolas(batch, arc, angle, scratch, thinning, standby):
+def _parabolas(batch, arc, angle, thinning, standby):
     """Values, slopes and halves of the curvatures of both postures, shape (3, 6) each.
 
     The three angles they come from are on the arc: beyond it joints may jump or the reach end.
     """
     lower, upper = batch.arc_lower[arc], batch.arc_upper[arc]
     e = min(CHAIN_STENCIL_RAD, (upper - lower) / 2)
-    one_approach(batch, arc, angle, scratch, thinning[0], standby[0])
-    thinning[1:], standby[1:] = 0.0, 0.0
-    if e <= 0.0:
-        return
     middle = min(max(angle, lower + e), upper - e)
-    points, ends = np.empty((3, 6)), np.empty((3, 6))
-    for j in range(3):
-        one_approach(batch, arc, middle + (j - 1) * e, scratch, points[j], ends[j])
+    angles = np.array([angle, middle - e, middle, middle + e])
+    points, ends = np.empty((6, 4)), np.empty((6, 4))
+    arc_postures(batch, np.full(4, arc), angles, points, ends)
     for i in range(6):
-        half = (points[2, i] - 2 * points[1, i] + points[0, i]) / (2 * e * e)
-        thinning[1, i] = (points[2, i] - points[0, i]) / (2 * e) + 2 * half * (angle - middle)
-        thinning[2, i] = half
-        half = (ends[2, i] - 2 * ends[1, i] + ends[0, i]) / (2 * e * e)
-        standby[1, i] = (ends[2, i] - ends[0, i]) / (2 * e) + 2 * half * (angle - middle)
-        standby[2, i] = half
+        _parabola(points[i], e, angle - middle, thinning[:, i])
+        _parabola(ends[i], e, angle - middle, standby[:, i])
 
 
 @kernel
-def _model_efforts(thinning, standby, start, x, squared, mu, stages):
+def _parabola(values, e, off, coefficients):
+    """The parabola at a place that is `off` the middle of three, from the values there, e apart."""
+    coefficients[0], coefficients[1], coefficients[2] = values[0], 0.0, 0.0
+    if e > 0.0:
+        half = (values[3] - 2 * values[2] + values[1]) / (2 * e * e)
+        coefficients[1] = (values[3] - values[1]) / (2 * e) + 2 * half * off
+        coefficients[2] = half
+
+
+@kernel
+def _model_efforts(thinning, before, x, squared, mu, stages):
     """Writes the effort of reaching each approach in the parabolas; returns the sum."""
-    for k in range(len(x)):
-        stages[k] = 0.0
-        for i in range(6):
-            r = thinning[k, 0, i] + x[k] * (thinning[k, 1, i] + x[k] * thinning[k, 2, i])
-            if k == 0:
-                r -= start[i]
-            else:
-                y = x[k - 1]
-                r -= standby[k - 1, 0, i] + y * (standby[k - 1, 1, i] + y * standby[k - 1, 2, i])
-            stages[k] += r * r if squared else math.sqrt(r * r + mu * mu)
+    y = _shifted(x)
+    stages[:] = 0.0
+    for i in range(6):
+        t0, t1, t2 = thinning[0, i], thinning[1, i], thinning[2, i]
+        b0, b1, b2 = before[0, i], before[1, i], before[2, i]
+        for k in range(len(x)):
+            r = t0[k] + x[k] * (t1[k] + x[k] * t2[k]) - (b0[k] + y[k] * (b1[k] + y[k] * b2[k]))
+            stages[k] += r * r if squared else math.sqrt(max(r * r + mu * mu, 0.0))
     return stages.sum()
 
 
 @kernel
-def _model_minimum(batch, arcs, angles, start, thinning, standby, reach, width):
+def _shifted(x):
+    """Of each approach, the change of the angle before it; none before the first."""
+    y = np.zeros(len(x))
+    y[1:] = x[:-1]
+    return y
+
+
+@kernel
+def _model_minimum(batch, arcs, angles, thinning, before, reach, width):
     """Changes of the angles that minimise the effort in the parabolas, within the reach [rad].
 
     The l1 norm is rounded off within `width` at first.
@@ -147,12 +155,12 @@ def _model_minimum(batch, arcs, angles, start, thinning, standby, reach, width):
     for k in range(n):
         low[k] = max(batch.arc_lower[arcs[k]] - angles[k], -reach[k])
         high[k] = min(batch.arc_upper[arcs[k]] - angles[k], reach[k])
-    x, dual = np.zeros(n), np.zeros((n, 6))
-    squared = batch.task.squared
+    x, dual = np.zeros(n), np.zeros((6, n))
+    squared = batch.squared
     mu = width
     while True:
         for _ in range(CHAIN_NEWTON_STEPS):
-            if not _newton_step(thinning, standby, start, x, dual, low, high, squared, mu):
+            if not _newton_step(thinning, before, x, dual, low, high, squared, mu):
                 break
         if squared or mu <= CHAIN_MU_LEAST:
             return x
@@ -160,42 +168,38 @@ def _model_minimum(batch, arcs, angles, start, thinning, standby, reach, width):
 
 
 @kernel
-def _newton_step(thinning, standby, start, x, dual, low, high, squared, mu):
+def _newton_step(thinning, before, x, dual, low, high, squared, mu):
     """One projected Newton step of the model, taken in place; false when it gains nothing.
 
     With l1 it is a primal-dual step (Chan, Golub, Mulet, SIAM J. Sci. Comput. 20, 1999): `dual`,
-    shape (n, 6), within +-1, stands for r / sqrt(r^2 + mu^2), whose own slope misleads Newton's
+    shape (6, n), within +-1, stands for r / sqrt(r^2 + mu^2), whose own slope misleads Newton's
     method as mu falls.
     """
-    n = len(x)
+    n, y = len(x), _shifted(x)
     slope, middle, beside = np.zeros(n), np.zeros(n), np.zeros(n)
-    heres, theres = np.zeros((n, 6)), np.zeros((n, 6))
-    firsts, seconds = np.empty((n, 6)), np.empty((n, 6))
-    for k in range(n):
-        y = x[k - 1] if k > 0 else 0.0
-        for i in range(6):
-            r = thinning[k, 0, i] + x[k] * (thinning[k, 1, i] + x[k] * thinning[k, 2, i])
-            here = thinning[k, 1, i] + 2 * x[k] * thinning[k, 2, i]
-            there = 0.0
-            if k == 0:
-                r -= start[i]
-            else:
-                r -= standby[k - 1, 0, i] + y * (standby[k - 1, 1, i] + y * standby[k - 1, 2, i])
-                there = standby[k - 1, 1, i] + 2 * y * standby[k - 1, 2, i]
-            if squared:
-                first, second = 2 * r, 2.0
-            else:
-                root = math.sqrt(r * r + mu * mu)
-                first, second = r / root, (1.0 - dual[k, i] * r / root) / root
-            heres[k, i], theres[k, i] = here, there
-            firsts[k, i], seconds[k, i] = first, second
+    slope_before, middle_before = np.zeros(n), np.zeros(n)
+    heres, theres = np.empty((6, n)), np.empty((6, n))
+    firsts, seconds = np.empty((6, n)), np.empty((6, n))
+    for i in range(6):
+        t0, t1, t2 = thinning[0, i], thinning[1, i], thinning[2, i]
+        b0, b1, b2 = before[0, i], before[1, i], before[2, i]
+        own = dual[i]
+        for k in range(n):
+            r = t0[k] + x[k] * (t1[k] + x[k] * t2[k]) - (b0[k] + y[k] * (b1[k] + y[k] * b2[k]))
+            root = math.sqrt(max(r * r + mu * mu, 0.0))
+            firsts[i, k] = 2 * r if squared else r / root
+            seconds[i, k] = 2.0 if squared else (1.0 - own[k] * r / root) / root
+        for k in range(n):
+            here, there = t1[k] + 2 * x[k] * t2[k], b1[k] + 2 * y[k] * b2[k]
+            first, second = firsts[i, k], seconds[i, k]
+            heres[i, k], theres[i, k] = here, there
             slope[k] += first * here
-            middle[k] += second * here * here + max(2 * first * thinning[k, 2, i], 0.0)
-            if k > 0:
-                slope[k - 1] -= first * there
-                middle[k - 1] += second * there * there
-                middle[k - 1] += max(-2 * first * standby[k - 1, 2, i], 0.0)
-                beside[k] -= second * here * there
+            middle[k] += second * here * here + max(2 * first * t2[k], 0.0)
+            slope_before[k] -= first * there
+            middle_before[k] += second * there * there + max(-2 * first * b2[k], 0.0)
+            beside[k] -= second * here * there
+    slope[:-1] += slope_before[1:]
+    middle[:-1] += middle_before[1:]
     for k in range(n):
         at_low, at_high = x[k] <= low[k] and slope[k] > 0, x[k] >= high[k] and slope[k] < 0
         if at_low or at_high:
@@ -205,22 +209,21 @@ def _newton_step(thinning, standby, start, x, dual, low, high, squared, mu):
         middle[k] = middle[k] * (1 + 1e-12) + 1e-9
     _solve_tridiagonal(middle, beside, slope)
     stages = np.empty(n)
-    before = _model_efforts(thinning, standby, start, x, squared, mu, stages)
+    at_first = _model_efforts(thinning, before, x, squared, mu, stages)
     share = 1.0
     for _ in range(20):
-        tried = x - share * slope
-        for k in range(n):
-            tried[k] = min(max(tried[k], low[k]), high[k])
-        after = _model_efforts(thinning, standby, start, tried, squared, mu, stages)
-        if after < before:
-            for k in range(n):
-                behind = tried[k - 1] - x[k - 1] if k > 0 else 0.0
-                for i in range(6):
-                    change = heres[k, i] * (tried[k] - x[k]) - theres[k, i] * behind
-                    moved = firsts[k, i] + seconds[k, i] * change
-                    dual[k, i] = min(max(moved, -1.0), 1.0)
+        tried = np.minimum(np.maximum(x - share * slope, low), high)
+        after = _model_efforts(thinning, before, tried, squared, mu, stages)
+        if after < at_first:
+            change = tried - x
+            change_before = _shifted(change)
+            for i in range(6):
+                for k in range(n):
+                    moved = heres[i, k] * change[k] - theres[i, k] * change_before[k]
+                    moved = firsts[i, k] + seconds[i, k] * moved
+                    dual[i, k] = min(max(moved, -1.0), 1.0)
             x[:] = tried
-            return before - after > (1e-13 * before if squared else 0.1 * mu)
+            return at_first - after > (1e-13 * at_first if squared else 0.1 * mu)
         share /= 2
     return False
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.approach.arcs import Arc, task_arcs
-from solver.approach.batch import chosen_paths, feasible_arcs
+from solver.approach.batch import arcs_of_packed, chosen_paths, packed_problem
 from solver.approach.frame import signed_angle
 from solver.approach.task import ApproachTask, approach_task
 from solver.cut_in import broken_limit
@@ -69,39 +69,53 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
         arcs_of: the feasible arcs of a task; one without length is a single approach.
     """
     tasks = [approach_task(problem, target, problem.start) for target in problem.targets]
+    numbers = packed_problem(problem)
     if arcs_of is task_arcs:
-        found = feasible_arcs(problem)
+        found = arcs_of_packed(problem, numbers)
         arcs = [found[target.id] for target in problem.targets]
     else:
         arcs = [tuple(arcs_of(task)) for task in tasks]
     order = [k for k in range(len(tasks)) if arcs[k]]
     if problem.options.order == "optimal":
-        order = _chosen_order(problem, tasks, arcs, order)
+        order = _chosen_order(problem, tasks, numbers, arcs, order)
     stops: tuple[Stop, ...] = ()
     for _ in range(EXCHANGE_ROUNDS):
         order = [k for k in order if arcs[k]]
         if not order:
             return ()
-        stops, suspicious = _stops(problem, [tasks[k] for k in order], [arcs[k] for k in order])
-        again = False
-        for k, stop, suspect in zip(order, stops, suspicious, strict=True):
-            # Rows that were added lie unevenly, which the quick look cannot judge.
-            looked_at = suspect or len(stop.task.retreats_m) > problem.options.path_points
-            retreat = broken_limit(stop.task, stop.candidate) if looked_at else None
-            if retreat is not None and retreat not in tasks[k].retreats_m:
-                tasks[k] = tasks[k].with_retreat(retreat)
-                arcs[k] = tuple(arcs_of(tasks[k]))
-                again = True
-        if not again:
+        own_tasks, own_numbers = [tasks[k] for k in order], numbers[:, order]
+        own_arcs = [arcs[k] for k in order]
+        batch = gather(problem, own_numbers, own_arcs)
+        # Polishing is most of the work, and for nothing where a target is about to be solved again.
+        rough = ladder_chain(batch, np.arange(len(order)))
+        stops, missing = _stops(problem, own_tasks, own_numbers, own_arcs, rough)
+        if not missing:
+            chain = polished_chain(batch, rough)
+            stops, missing = _stops(problem, own_tasks, own_numbers, own_arcs, chain)
+        if not missing:
             break
+        for position, retreat in missing.items():
+            k = order[position]
+            tasks[k] = tasks[k].with_retreat(retreat)
+            arcs[k] = tuple(arcs_of(tasks[k]))
     return stops
 
 
 def least_chain(batch: Batch, order: Indices) -> Chain:
     """The approaches of least total effort for targets in an order: `order: given`."""
-    arcs, angles, _ = refined_ladder(batch, order, LADDER_STEP_RAD, LADDER_KEPT, LADDER_ROUNDS)
-    angles, effort = polished(batch, arcs, angles)
-    return Chain(order, arcs, angles, float(effort))
+    return polished_chain(batch, ladder_chain(batch, order))
+
+
+def ladder_chain(batch: Batch, order: Indices) -> Chain:
+    """The approaches of least total effort among the angles of a refined ladder graph."""
+    found = refined_ladder(batch, order, LADDER_STEP_RAD, LADDER_KEPT, LADDER_ROUNDS)
+    return Chain(order, *found)
+
+
+def polished_chain(batch: Batch, chain: Chain) -> Chain:
+    """The chain with its angles refined together and continuously."""
+    angles, effort = polished(batch, chain.arcs, chain.angles)
+    return Chain(chain.order, chain.arcs, angles, float(effort))
 
 
 def least_order(batch: Batch, given: Indices, seed: int) -> Chain:
@@ -120,6 +134,7 @@ def least_order(batch: Batch, given: Indices, seed: int) -> Chain:
 def _chosen_order(
     problem: Problem,
     tasks: Sequence[ApproachTask],
+    numbers: Array,
     arcs: Sequence[Sequence[Arc]],
     feasible: Sequence[int],
 ) -> list[int]:
@@ -130,34 +145,44 @@ def _chosen_order(
     if not feasible:
         return []
     sorted_ = sorted(feasible, key=lambda k: tasks[k].target.id)
-    batch = gather([tasks[k] for k in sorted_], [arcs[k] for k in sorted_])
+    batch = gather(problem, numbers[:, sorted_], [arcs[k] for k in sorted_])
     given = np.argsort(np.array(sorted_))
     chain = least_order(batch, given, problem.options.seed)
     return [sorted_[k] for k in chain.order]
 
 
 def _stops(
-    problem: Problem, tasks: Sequence[ApproachTask], arcs: Sequence[Sequence[Arc]]
-) -> tuple[tuple[Stop, ...], Sequence[bool]]:
-    """The stops of targets in order, and whether each may break a limit between its rows."""
-    chain = least_chain(gather(tasks, arcs), np.arange(len(tasks)))
+    problem: Problem,
+    tasks: Sequence[ApproachTask],
+    numbers: Array,
+    arcs: Sequence[Sequence[Arc]],
+    chain: Chain,
+) -> tuple[tuple[Stop, ...], dict[int, float]]:
+    """The stops of a chain, and the retreats that rows are missing at, by place in it [m]."""
     every = [arc for own in arcs for arc in own]
     chosen = [every[index] for index in chain.arcs]
-    paths = chosen_paths(problem, [task.target for task in tasks], chosen, chain.angles)
-    before: Array = np.asarray(problem.start)
+    paths = chosen_paths(problem, numbers, chosen, chain.angles)
+    standby, thinning = paths.joints[:, 0], paths.joints[:, -1]
+    before = np.concatenate(([problem.start], standby[:-1]))
     stops = []
-    for task, arc, angle, path in zip(tasks, chosen, chain.angles, paths.joints, strict=True):
-        standby, thinning = path[0], path[-1]
-        effort = posture_effort(thinning, before, problem.joint_weights, problem.options.norm)
+    for k, (task, arc) in enumerate(zip(tasks, chosen, strict=True)):
         candidate = Candidate(
-            approach_angle_rad=signed_angle(float(angle)),
+            approach_angle_rad=signed_angle(float(chain.angles[k])),
             tool_side=arc.tool_side,
             branch=arc.branch,
-            thinning_joints=tuple(float(value) for value in thinning),
-            effort=effort,
+            thinning_joints=tuple(thinning[k].tolist()),
+            effort=posture_effort(
+                thinning[k], before[k], problem.joint_weights, problem.options.norm
+            ),
             iterations=0,
             status="optimum_of_ladder",
         )
-        stops.append(Stop(task, candidate, arc, float(angle)))
-        before = standby
-    return tuple(stops), paths.suspicious.tolist()
+        stops.append(Stop(task, candidate, arc, float(chain.angles[k])))
+    missing = {}
+    for k, (stop, suspect) in enumerate(zip(stops, paths.suspicious.tolist(), strict=True)):
+        # Rows that were added lie unevenly, which the quick look cannot judge.
+        looked_at = suspect or len(stop.task.retreats_m) > problem.options.path_points
+        retreat = broken_limit(stop.task, stop.candidate) if looked_at else None
+        if retreat is not None and retreat not in stop.task.retreats_m:
+            missing[k] = retreat
+    return tuple(stops), missing

@@ -3,7 +3,7 @@
 import numpy as np
 
 from solver import Options, Problem, Robot
-from solver.approach.batch import chosen_paths, feasible_arcs
+from solver.approach.batch import chosen_paths, feasible_arcs, packed_problem
 from solver.approach.task import approach_task
 from tests.solver.problems import random_targets
 
@@ -11,24 +11,24 @@ from tests.solver.problems import random_targets
 def test_a_limit_broken_between_rows_is_suspected(tabletop: Robot) -> None:
     options = Options(path_points=4, standoff_m=0.1, include=("path",))
     problem = Problem(tabletop, random_targets(61, 150), options=options)
-    targets, arcs, angles = [], [], []
+    places, arcs, angles = [], [], []
     found = feasible_arcs(problem)
-    for target in problem.targets:
+    for k, target in enumerate(problem.targets):
         for arc in found[target.id]:
             # Beside an arc's end a joint is close to a limit.
             for share in (1e-6, 0.5):
-                targets.append(target)
+                places.append(k)
                 arcs.append(arc)
                 angles.append(arc.lower_rad + share * (arc.upper_rad - arc.lower_rad))
-    paths = chosen_paths(problem, targets, arcs, np.array(angles))
+    paths = chosen_paths(problem, packed_problem(problem)[:, places], arcs, np.array(angles))
     broken = 0
-    for target, arc, angle, suspicious in zip(targets, arcs, angles, paths.suspicious, strict=True):
-        task = approach_task(problem, target, problem.start)
+    for k, arc, angle, suspicious in zip(places, arcs, angles, paths.suspicious, strict=True):
+        task = approach_task(problem, problem.targets[k], problem.start)
         retreats = np.linspace(options.standoff_m, 0.0, 301)
         rows = task.postures(angle, arc.tool_side, arc.branch, retreats)
         outside = float(np.maximum(task.lower - rows, rows - task.upper).max())
         if outside > 1e-9:
             broken += 1
-            assert suspicious, (target.id, outside)
+            assert suspicious, (k, outside)
     assert broken >= 5
     assert np.mean(paths.suspicious) < 0.5

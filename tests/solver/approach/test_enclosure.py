@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from solver import Problem, Robot, Target
@@ -28,6 +28,10 @@ def on_turn_of(q: Array, middle: Array) -> Array:
 
 
 @settings(max_examples=800)
+@example(  # the wrist centre on the waist's axis, which says nothing of an arm without offset
+    arm=ARMS[0], position=(0.0, 0.0, 0.0), direction=(0.0, 0.5, 0.0), low=0.0, exponent=0.0,
+    shares=(0.0, 1.0), branch=0, retreat=0.0,
+)  # fmt: skip
 @given(
     arm=st.sampled_from(ARMS),
     position=VECTOR,

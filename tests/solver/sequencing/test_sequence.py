@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Robot, Target
-from solver.approach.arcs import task_arcs
-from solver.approach.task import approach_task
+from solver.approach.batch import feasible_arcs, packed_problem
 from solver.sequencing.batch import Batch
 from solver.sequencing.comparison import even_ladder_effort, greedy_effort
 from solver.sequencing.gather import gather
@@ -21,10 +20,11 @@ from tests.solver.problems import DATA_SET_3, random_targets
 def batch_of(robot: Robot, targets: list[Target], **options: object) -> tuple[Batch, list[Target]]:
     """The batch of those targets that have an arc, and those targets."""
     problem = Problem(robot, targets, options=Options(**options))  # type: ignore[arg-type]
-    tasks = [approach_task(problem, target, problem.start) for target in targets]
-    pairs = [(task, arcs) for task in tasks if (arcs := task_arcs(task))]
-    batch = gather([task for task, _ in pairs], [arcs for _, arcs in pairs])
-    return batch, [task.target for task, _ in pairs]
+    found = feasible_arcs(problem)
+    reached = [k for k, target in enumerate(targets) if found[target.id]]
+    arcs = [found[targets[k].id] for k in reached]
+    batch = gather(problem, packed_problem(problem)[:, reached], arcs)
+    return batch, [targets[k] for k in reached]
 
 
 def plain_ladder(batch: Batch, order: list[int], step: float) -> float:
