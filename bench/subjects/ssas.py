@@ -15,7 +15,7 @@ SWEEPS = (50, 360)
 
 def measure(quick: bool) -> list[Row]:
     """Microseconds a target on one core, batch of 1,000 seeded targets."""
-    targets, runs = random_set(3, 50 if quick else 1000), 3 if quick else 5
+    targets, runs = random_set(3, 50 if quick else 1000), 3 if quick else 9
     problem = targets.problem(method="ssas", order="independent", include=("path",))
     start = np.asarray(problem.start)
 
