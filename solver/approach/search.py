@@ -34,7 +34,7 @@ from solver.tolerances import (
     SMOOTH_MINIMUM_RAD,
 )
 
-_MOST = math.ceil(2 * math.pi / EFFORT_CELL_RAD) + 1
+_MOST = 8 * math.ceil((2 * math.pi / EFFORT_CELL_RAD + 1) / 8)
 _SLOPE_SHARE = 1e-5
 _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
 
@@ -100,7 +100,8 @@ def path_joints(task, turns, wrist, joints, rows):
 def sample_effort(task, scratch, branch, count):
     """Fills turns, joints and efforts of the first `count` angles of scratch."""
     turns_at_angles(task, scratch.angles, count, 0.0, branch // 2, scratch.turns)
-    joints_of_turns(task, scratch.turns, count, branch % 2, scratch.joints)
+    # A multiple of the vector loop's width; what is beyond count is nobody's.
+    joints_of_turns(task, scratch.turns, 8 * ((count + 7) // 8), branch % 2, scratch.joints)
     choose_turns_of_samples(task, scratch, branch, count)
     squared = task.numbers[SQUARED] > 0.0
     for n in range(count):
