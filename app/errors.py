@@ -20,16 +20,24 @@ class ProblemError(Exception):
 
     Attributes:
         code: what it is, for programs; the end of the problem's `type`.
+        retry_after_s: when it makes sense to try again, if that is known.
     """
 
     def __init__(
-        self, status: int, code: str, detail: str, *, faults: Sequence[Fault] = ()
+        self,
+        status: int,
+        code: str,
+        detail: str,
+        *,
+        faults: Sequence[Fault] = (),
+        retry_after_s: int | None = None,
     ) -> None:
         super().__init__(detail)
         self.status = status
         self.code = code
         self.detail = detail
         self.faults = tuple(faults)
+        self.retry_after_s = 1 if retry_after_s is None and status == 503 else retry_after_s
 
 
 def invalid_request(faults: Sequence[Fault]) -> ProblemError:
@@ -80,7 +88,8 @@ def install_error_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(ProblemError)
     async def expected(_: Request, error: ProblemError) -> Response:
-        headers = {"Retry-After": "1"} if error.status == 503 else None
+        retry = error.retry_after_s
+        headers = None if retry is None else {"Retry-After": str(retry)}
         return problem_response(
             error.status, error.code, error.detail, faults=error.faults, headers=headers
         )

@@ -1,4 +1,7 @@
-"""The one way kernels are compiled: Numba, cached on disk, IEEE arithmetic (no fastmath).
+"""The one way kernels are compiled: Numba, cached on disk, IEEE arithmetic.
+
+No fastmath, but for two liberties of `minimum` that change no result: no value is NaN, and the sign
+of a zero does not matter.
 
 Numba notices a changed file but not a changed function that it inlined from another file, so the
 cache folder is named after everything a kernel depends on: Numba, Python, processor and the sources

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from app.pictures.contest_times import method_style, shown_targets
+from app.pictures.contest_style import method_style, shown_targets
 from app.pictures.effort import angle_range, draw_curves
 from app.pictures.labels import plain_text
 from solver import Problem, Target

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from app.pictures.arm import draw_branch, draw_links, draw_pedestal
-from app.pictures.contest_times import shown_targets
+from app.pictures.contest_style import shown_targets
 from app.pictures.labels import plain_text
 from solver import Problem
 from solver.comparison.result import Comparison

@@ -1,42 +1,20 @@
 """Time against effort: one marker a method, failures at the edge."""
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
-import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from app.pictures.contest_style import method_style
 from app.pictures.labels import plain_text
-from solver import Target
 from solver.comparison.result import Comparison, Row
 
-MARKERS: Final = ("o", "s", "^", "D", "v", "P", "*", "h", "<", ">")
 FAILED_MARKER: Final = "x"
 # Gaps below this are rounding: everything there is drawn as the best [%].
 SMALLEST_GAP_PERCENT: Final = 1e-4
 FAILED_HEIGHT: Final = 0.94  # in shares of the panel
-
-
-def method_style(comparison: Comparison, method: str) -> dict[str, Any]:
-    """Colour and marker of a method, the same in every picture of a comparison."""
-    place = [summary.method for summary in comparison.summaries].index(method)
-    colours = matplotlib.colormaps["tab10"]
-    return {"color": colours(place % 10), "marker": MARKERS[place % len(MARKERS)]}
-
-
-def shown_targets(
-    comparison: Comparison, targets: Sequence[Target], most: int
-) -> tuple[Target, ...]:
-    """The targets that a picture has room for: the first ones that any method reaches.
-
-    Where there are fewer than `most` of them, so many are shown; where none, the first targets.
-    """
-    reached = {row.target_id for row in comparison.rows if row.solved}
-    if len(targets) <= most:
-        return tuple(targets)
-    return tuple([target for target in targets if target.id in reached] or targets)[:most]
 
 
 def draw_times(comparison: Comparison) -> Figure:

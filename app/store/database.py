@@ -21,7 +21,7 @@ def open_engine(url: URL) -> Engine:
         event.listen(engine, "connect", _configure_sqlite)
         event.listen(engine, "begin", _begin_sqlite)
     with writing(engine).begin() as connection:
-        _migrate(connection)
+        migrate(connection)
     return engine
 
 
@@ -47,10 +47,11 @@ def _begin_sqlite(connection: Connection) -> None:
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
 
 
-def _migrate(connection: Connection) -> None:
+def migrate(connection: Connection, revision: str = "head") -> None:
+    """Bring the database up to a version of the schema."""
     config = Config()
     config.set_main_option("path_separator", "os")
     with resources.as_file(resources.files("app.store") / "migrations") as folder:
         config.set_main_option("script_location", str(folder).replace("%", "%%"))
         config.attributes["connection"] = connection
-        command.upgrade(config, "head")
+        command.upgrade(config, revision)

@@ -7,9 +7,9 @@ import numpy as np
 from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, find_arcs
 from solver.approach.between_rows import may_leave_between
 from solver.approach.cheapest import cheapest, cheapest_scratch
+from solver.approach.effort_samples import path_joints
 from solver.approach.packed import LOWER, UPPER, PackedTask
 from solver.approach.roots import arc_scratch
-from solver.approach.search import path_joints
 from solver.approach.turns import TURN_ROWS, path_columns, turns_along_path
 from solver.compiled import kernel
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from solver.approach.arc_search import ARC_COLUMNS, MOST_ARCS, cell_pieces, open_up
 from solver.approach.cells import enters_reach
+from solver.approach.effort_samples import EffortScratch, effort_scratch
 from solver.approach.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
 from solver.approach.roots import ARMS, ArcScratch, arc_scratch
-from solver.approach.search import EffortScratch, effort_scratch, least_effort
+from solver.approach.search import least_effort
 from solver.approach.turns import BESIDE, REACH, wrist_sign
 from solver.compiled import inlined, kernel
 from solver.kinematics.arctangent import atan2

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.approach.effort_samples import path_joints
 from solver.approach.packed import PackedTask
-from solver.approach.search import path_joints
 from solver.approach.turns import (
     TURN_ROWS,
     joints_of_turns,

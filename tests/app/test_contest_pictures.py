@@ -8,7 +8,8 @@ import pytest
 from app.pictures.contest_effort import can_draw_effort, draw_contest_effort
 from app.pictures.contest_poses import draw_contest_poses
 from app.pictures.contest_strawberry import draw_strawberry
-from app.pictures.contest_times import draw_times, shown_targets
+from app.pictures.contest_style import shown_targets
+from app.pictures.contest_times import draw_times
 from app.pictures.labels import LONGEST_LABEL, plain_text
 from app.reports.picture import EFFORT, POSES, TIMES
 from app.reports.pictures import draw_pictures

@@ -1,5 +1,3 @@
-import contextlib
-import sqlite3
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -7,9 +5,10 @@ from pathlib import Path
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import URL, Engine
+from sqlalchemy import URL, Engine, create_engine, text
 
 from app.store import ExecutionStore, PlanStore, RobotBusy, open_engine
+from app.store.database import migrate
 from app.store.executions import MOST_LISTED
 from app.store.tables import METADATA
 
@@ -43,14 +42,14 @@ def test_migrations_lead_to_the_tables(engine: Engine) -> None:
 
 def test_a_database_of_the_first_version_keeps_its_plans(tmp_path: Path) -> None:
     url = URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3"))
-    engine = open_engine(url)
-    PlanStore(engine).add(identifier(1), robot="tabletop", request="{}", answer="[]")
+    engine = create_engine(url)
+    with engine.begin() as connection:
+        migrate(connection, "0001")
+        connection.execute(
+            text("INSERT INTO plans VALUES (:id, :at, 'tabletop', '{}', '[]')"),
+            {"id": identifier(1), "at": "2026-01-01 00:00:00"},
+        )
     engine.dispose()
-    with contextlib.closing(sqlite3.connect(tmp_path / "prunus.sqlite3")) as database:
-        database.execute("DROP TABLE executions")
-        database.execute("DROP TABLE comparisons")
-        database.execute("UPDATE alembic_version SET version_num = '0001'")
-        database.commit()
     engine = open_engine(url)
     plan = PlanStore(engine).plan(identifier(1))
     assert plan is not None

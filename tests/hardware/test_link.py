@@ -231,8 +231,10 @@ def test_something_else_than_messages_closes_the_link() -> None:
         connection.send('{"type": "dance"}')
         heartbeats(connection)
 
-    with serving(talk) as url, joined(url):
+    with serving(talk) as url, joined(url) as (link, news):
         wait_until(lambda: len(asked) >= 2, WAIT_S)
+        assert news
+        assert link.refusal is None
 
 
 @pytest.mark.parametrize(

@@ -119,8 +119,9 @@ def test_faults_from_the_command_line_and_from_standard_input(start: Start) -> N
 
 
 def test_the_last_line_of_commands_needs_no_end(start: Start) -> None:
-    process, _ = start()
+    process, device = start()
     finish(process, "unplug")
+    assert not os.path.exists(device)
 
 
 @pytest.mark.parametrize("closed", [False, True])
