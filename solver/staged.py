@@ -12,6 +12,7 @@ from typing import Any
 from solver.approach.arcs import Arc
 from solver.approach.task import approach_task
 from solver.kinematics.families import has_closed_form
+from solver.many_targets import plan_many, plans_together
 from solver.methods.candidate import Candidate
 from solver.one_target import plan_target
 from solver.problem import Problem
@@ -63,9 +64,13 @@ def plan_part(
             answered for the one before, shape (joints,) [rad or m].
     """
     part = range(first, min(first + count, len(choice.order)))
+    targets = [problem.targets_by_id[choice.order[place]] for place in part]
+    together = plan_many(problem, targets) if plans_together(problem) else {}
     approaches: list[Approach] = []
-    for place in part:
-        target = problem.targets_by_id[choice.order[place]]
+    for place, target in zip(part, targets, strict=True):
+        if target.id in together:
+            approaches.append(together[target.id])
+            continue
         stop = choice.stops.get(target.id)
         following = None if stop is None else _next_stop(choice, place)
         approach = plan_target(problem, target, reference, stop, following)
