@@ -30,7 +30,7 @@ _LOCATION: dict[str, Any] = {"Location": {"schema": {"type": "string"}}}
     responses={200: {"model": FramesAnswer}, **problem_answers(500)},
 )
 async def list_frames(request: Request) -> Response:
-    """By name; `base`, the robot's own, is not among them."""
+    """By name, without `residuals_m`; `base`, the robot's own, is not among them."""
     body = await run_in_threadpool(_service(request).documents)
     return Response(body, media_type="application/json")
 

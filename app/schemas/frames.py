@@ -99,6 +99,6 @@ class FrameAnswer(BaseModel):
 
 
 class FramesAnswer(BaseModel):
-    """All frames, by name."""
+    """All frames, by name, without the residuals of single pairs."""
 
     frames: list[FrameAnswer]

@@ -87,8 +87,10 @@ class FrameService:
         return document
 
     def documents(self) -> bytes:
-        """The JSON of all frames."""
-        frames = [orjson.Fragment(document) for document in self._store.documents()]
+        """The JSON of all frames, each without the residuals of its pairs."""
+        frames = [orjson.loads(document) for document in self._store.documents()]
+        for frame in frames:
+            frame.pop("residuals_m", None)
         return orjson.dumps({"frames": frames})
 
     def remove(self, name: str) -> None:

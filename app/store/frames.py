@@ -82,7 +82,7 @@ class FrameStore:
         query = select(FRAMES.c.name, FRAMES.c.document)
         with self._engine.connect() as connection:
             # Sorted here: how databases sort text depends on how they were set up.
-            rows = sorted(connection.execute(query).tuples())
+            rows = sorted((row.name, row.document) for row in connection.execute(query))
         return [document for _, document in rows]
 
     def remove(self, name: str) -> bool:
