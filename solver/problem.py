@@ -5,7 +5,7 @@ Lengths in metres, angles in radians, everything in the robot's base frame.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
@@ -123,6 +123,11 @@ class Problem:
             known = ", ".join(tool.name for tool in self.robot.tools)
             faults.append(Fault(("tool",), f"unknown tool; known: {known}"))
         return tool or default
+
+    @cached_property
+    def targets_by_id(self) -> Mapping[str, Target]:
+        """The targets by their ids, in their order."""
+        return {target.id: target for target in self.targets}
 
     @property
     def mounted_tool(self) -> Tool:

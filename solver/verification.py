@@ -54,7 +54,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         reference: posture from which effort and transfer count: the start, or unless independent
             the previous planned standby, shape (6,) [rad].
     """
-    target = next((t for t in problem.targets if t.id == approach.target_id), None)
+    target = problem.targets_by_id.get(approach.target_id)
     claim = _claim(problem, approach)
     if target is None or claim is None:
         return Verification((Residual("missing_fields", 1.0, 0.0),))
