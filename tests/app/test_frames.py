@@ -244,6 +244,14 @@ def test_names_that_are_none_are_refused(server: Server, name: str) -> None:
     assert server.client.get("/v1/frames").json() == {"frames": []}
 
 
+def test_a_wrong_method_is_told_all_that_are_right(server: Server) -> None:
+    answer = server.client.post(PATH, json=POSE)
+    problem = assert_problem(answer, 405)
+    assert problem["type"].endswith(":method_not_allowed")
+    assert answer.headers["allow"] == "DELETE, GET, PUT"
+    assert server.client.delete("/v1/frames").headers["allow"] == "GET"
+
+
 @pytest.mark.parametrize("name", ["x" * 100, "Cam-2_left.v1", "-", "0"])
 def test_names_that_are_taken(server: Server, name: str) -> None:
     answer = server.client.put(f"/v1/frames/{name}", json=POSE)
