@@ -15,6 +15,7 @@ from app.errors import install_error_handlers
 from app.routers import (
     comparisons,
     executions,
+    frames,
     health,
     link,
     plans,
@@ -25,15 +26,17 @@ from app.routers import (
 from app.routers.common import problem_answers
 from app.schemas.comparisons import ComparisonRequest
 from app.schemas.executions import ExecutionRequest
+from app.schemas.frames import FrameRegistrationRequest, FrameRequest
 from app.schemas.problem_details import ProblemDetails
 from app.schemas.requests import PlanRequest
 from app.schemas.thinning_selections import ThinningSelectionRequest
 from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
+from app.services.frames import FrameService
 from app.services.links import LinkService
 from app.services.solving import SolvingService
 from app.settings import Settings
-from app.store import ComparisonStore, ExecutionStore, PlanStore, open_engine
+from app.store import ComparisonStore, ExecutionStore, FrameStore, PlanStore, open_engine
 from app.version import prunus_version
 
 
@@ -57,6 +60,7 @@ def create_app(settings: Settings) -> FastAPI:
         plans,
         executions,
         comparisons,
+        frames,
         thinning_selections,
         robots,
         robot_state,
@@ -76,6 +80,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
     state.store = PlanStore(engine)
     state.execution_store = ExecutionStore(engine)
+    state.frames = FrameService(FrameStore(engine))
     state.links = LinkService()
     state.solving = SolvingService(settings.workers)
     state.executions = ExecutionService(
@@ -103,6 +108,8 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         (ExecutionRequest, "validation"),
         (ComparisonRequest, "validation"),
         (ThinningSelectionRequest, "validation"),
+        (FrameRequest, "validation"),
+        (FrameRegistrationRequest, "validation"),
         (ProblemDetails, "serialization"),
     ):
         _, definitions = models_json_schema(

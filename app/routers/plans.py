@@ -12,6 +12,8 @@ from app.errors import ProblemError, invalid_request
 from app.routers.common import body_of, json_body, problem_answers
 from app.schemas.answers import PlanAnswer
 from app.schemas.requests import PlanRequest
+from app.services.frames import FrameService
+from app.services.sent_frames import FindFrame, stored_request
 from app.services.solving import SolvingService
 from app.services.wire import parse_request, problem_from_wire
 from app.store import PlanStore
@@ -40,7 +42,8 @@ async def create_plan(request: Request) -> Response:
     """Targets that cannot be reached come back infeasible, with a reason."""
     body = await json_body(request)
     limit: int = request.app.state.settings.sync_targets_limit
-    problem, normalised = await run_in_threadpool(_read, body, limit)
+    frames: FrameService = request.app.state.frames
+    problem, normalised = await run_in_threadpool(_read, body, limit, frames.transform)
     plan_id = uuid.uuid4().hex
     solving: SolvingService = request.app.state.solving
     answer = await solving.solve(problem, plan_id)
@@ -56,12 +59,13 @@ async def create_plan(request: Request) -> Response:
     )
 
 
-def _read(body: bytes, targets_limit: int) -> tuple[Problem, str]:
+def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Problem, str]:
     request = parse_request(body)
     if len(request.targets) > targets_limit:
         detail = f"more than {targets_limit} targets: asynchronous jobs are not available yet"
         raise invalid_request([Fault(("targets",), detail)])
-    return problem_from_wire(request), request.model_dump_json()
+    problem = problem_from_wire(request, find_frame)
+    return problem, stored_request(request, problem)
 
 
 @router.get(

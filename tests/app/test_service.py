@@ -103,7 +103,7 @@ def test_openapi_document_is_the_exported_one(server: Server) -> None:
     for absent in ('"null"', "anyOf", "oneOf", "prefixItems", "HTTPValidationError"):
         assert absent not in text
     for method in (method for path in document["paths"].values() for method in path.values()):
-        assert "_" not in method["operationId"]
+        assert "v1" not in method["operationId"], "FastAPI made it up from the path"
 
 
 def test_stock_pages_are_off(server: Server) -> None:
