@@ -83,6 +83,11 @@ def problem_response(
     return Response(orjson.dumps(body), status, headers=headers, media_type=MEDIA_TYPE)
 
 
+def internal_error() -> Response:
+    """The 500 that says no more than that the log has it."""
+    return problem_response(500, "internal_error", "Something broke; the log has it.")
+
+
 def install_error_handlers(app: FastAPI) -> None:
     """Make every error of the application a problem."""
 
@@ -112,5 +117,5 @@ def install_error_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(Exception)
     async def unexpected(_: Request, error: Exception) -> Response:
-        # Starlette raises the error again behind this answer, and the server logs it in full.
-        return problem_response(500, "internal_error", "Something broke; the log has it.")
+        # Starlette raises the error again behind this answer, and it is logged in full.
+        return internal_error()
