@@ -9,6 +9,8 @@ import typer
 from app.compare_command import compare
 from app.refusals import fail
 from app.robot_commands import robot_commands
+from app.settings_command import SettingsFile
+from app.settings_command import settings as settings_command
 
 cli = typer.Typer(
     name="prunus",
@@ -19,6 +21,7 @@ cli = typer.Typer(
 )
 cli.add_typer(robot_commands, name="robot")
 cli.command()(compare)
+cli.command(name="settings")(settings_command)
 
 
 def main() -> None:
@@ -52,20 +55,19 @@ def serve(
     data_dir: Annotated[
         Path | None, typer.Option(help="Folder of the database [prunus-data].")
     ] = None,
+    settings: SettingsFile = None,
 ) -> None:
-    """Start the service; PRUNUS_... in the environment sets what is not given."""
-    from pydantic import ValidationError
+    """Start the service.
 
+    What is not given is taken from PRUNUS_... in the environment, and then from the settings file.
+    """
     from app.serving import CannotServe, run_service
-    from app.settings import Settings
+    from app.settings_command import settings_or_fail
 
     given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir}
+    resolved = settings_or_fail(settings, given)
     try:
-        settings = Settings(**{name: value for name, value in given.items() if value is not None})
-        run_service(settings)
-    except ValidationError as error:
-        names = ", ".join(f"PRUNUS_{entry['loc'][0]}".upper() for entry in error.errors())
-        fail(f"settings that make no sense: {names}", code=1)
+        run_service(resolved)
     except CannotServe as error:
         fail(str(error), code=1)
 

@@ -96,6 +96,11 @@ def _allowed(request: Request) -> str:
     )
 
 
+def internal_error() -> Response:
+    """The 500 that says no more than that the log has it."""
+    return problem_response(500, "internal_error", "Something broke; the log has it.")
+
+
 def install_error_handlers(app: FastAPI) -> None:
     """Make every error of the application a problem."""
 
@@ -128,5 +133,5 @@ def install_error_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(Exception)
     async def unexpected(_: Request, error: Exception) -> Response:
-        # Starlette raises the error again behind this answer, and the server logs it in full.
-        return problem_response(500, "internal_error", "Something broke; the log has it.")
+        # Starlette raises the error again behind this answer, and it is logged in full.
+        return internal_error()

@@ -7,17 +7,22 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
+from sqlalchemy import event
 from starlette.concurrency import run_in_threadpool
 
 from app.body_limit import BodyLimitMiddleware
+from app.body_timeout import BodyTimeoutMiddleware
 from app.browser_guard import BrowserGuardMiddleware
 from app.errors import install_error_handlers
+from app.metrics import Metrics
+from app.request_log import RequestLogMiddleware
 from app.routers import (
     comparisons,
     executions,
     frames,
     health,
     link,
+    metrics,
     plans,
     robot_state,
     robots,
@@ -34,9 +39,10 @@ from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
 from app.services.frames import FrameService
 from app.services.links import LinkService
-from app.services.solving import SolvingService
+from app.services.solving import LogOptions, SolvingService
 from app.settings import Settings
 from app.store import ComparisonStore, ExecutionStore, FrameStore, PlanStore, open_engine
+from app.traffic import StoppingMiddleware, Traffic
 from app.version import prunus_version
 
 
@@ -53,8 +59,19 @@ def create_app(settings: Settings) -> FastAPI:
         redoc_url=None,
     )
     app.state.settings = settings
+    app.state.metrics = Metrics(prunus_version())
+    app.state.traffic = Traffic()
+    app.state.stopping = app.state.traffic.stopping
+    # What is added last is outermost.
+    app.add_middleware(StoppingMiddleware, traffic=app.state.traffic)
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
+    app.add_middleware(
+        BodyTimeoutMiddleware,
+        idle_s=settings.body_idle_timeout_s,
+        total_s=settings.body_timeout_s,
+    )
     app.add_middleware(BrowserGuardMiddleware, host=settings.host)
+    app.add_middleware(RequestLogMiddleware, metrics=app.state.metrics, traffic=app.state.traffic)
     install_error_handlers(app)
     for module in (
         plans,
@@ -66,6 +83,7 @@ def create_app(settings: Settings) -> FastAPI:
         robot_state,
         link,
         health,
+        metrics,
     ):
         app.include_router(module.router)
     # FastAPI's documented way to extend the document is to replace this method.
@@ -82,7 +100,11 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     state.execution_store = ExecutionStore(engine)
     state.frames = FrameService(FrameStore(engine))
     state.links = LinkService()
-    state.solving = SolvingService(settings.workers)
+    state.engine = engine
+    event.listen(engine, "handle_error", lambda _: state.metrics.store_failed())
+    state.solving = SolvingService(
+        settings.workers, state.metrics, LogOptions(settings.log_format, settings.log_level)
+    )
     state.executions = ExecutionService(
         state.execution_store, state.store, state.solving, state.links
     )

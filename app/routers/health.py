@@ -9,6 +9,7 @@ from app.routers.common import problem_answers
 from app.schemas.answers import HealthAnswer
 from app.services.solving import SolvingService
 from app.store import PlanStore
+from app.traffic import RETRY_S, Traffic
 
 router = APIRouter(tags=["health"])
 
@@ -26,7 +27,10 @@ async def get_health() -> HealthAnswer:
     responses=problem_answers(503),
 )
 async def get_readiness(request: Request) -> HealthAnswer:
-    """503 until then."""
+    """503 until then, and again as soon as the service is stopping."""
+    traffic: Traffic = request.app.state.traffic
+    if traffic.is_stopping:
+        raise ProblemError(503, "stopping", "The service is stopping.", retry_after_s=RETRY_S)
     solving: SolvingService = request.app.state.solving
     store: PlanStore = request.app.state.store
     if not await solving.is_ready():
