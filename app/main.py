@@ -8,14 +8,19 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
 from starlette.concurrency import run_in_threadpool
+from starlette.middleware.cors import CORSMiddleware
 
+from app.access_document import describe_access
+from app.access_guard import AccessGuardMiddleware
 from app.body_limit import BodyLimitMiddleware
 from app.browser_guard import BrowserGuardMiddleware
+from app.cors import CORS_RULES
 from app.errors import install_error_handlers
 from app.routers import (
     comparisons,
     executions,
     health,
+    leases,
     link,
     plans,
     robot_state,
@@ -25,15 +30,19 @@ from app.routers import (
 from app.routers.common import problem_answers
 from app.schemas.comparisons import ComparisonRequest
 from app.schemas.executions import ExecutionRequest
+from app.schemas.leases import LeaseRenewal, LeaseRequest
 from app.schemas.problem_details import ProblemDetails
 from app.schemas.requests import PlanRequest
 from app.schemas.thinning_selections import ThinningSelectionRequest
+from app.scopes import check_rows
+from app.services.access import AccessService
 from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
+from app.services.leases import LeaseService
 from app.services.links import LinkService
 from app.services.solving import SolvingService
 from app.settings import Settings
-from app.store import ComparisonStore, ExecutionStore, PlanStore, open_engine
+from app.store import ComparisonStore, ExecutionStore, PlanStore, TokenStore, open_engine
 from app.version import prunus_version
 
 
@@ -51,7 +60,22 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
-    app.add_middleware(BrowserGuardMiddleware, host=settings.host)
+    app.add_middleware(
+        AccessGuardMiddleware,
+        token_required=settings.token_required,
+        rate_per_s=settings.rate_limit_per_s,
+        burst=settings.rate_burst,
+        most_requests=settings.most_requests,
+    )
+    if settings.cors_origins:
+        # In front of what checks tokens: a browser asks beforehand without one.
+        app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS_RULES)
+    app.add_middleware(
+        BrowserGuardMiddleware,
+        host=settings.host,
+        any_name=settings.token_required,
+        origins=settings.cors_origins,
+    )
     install_error_handlers(app)
     for module in (
         plans,
@@ -60,10 +84,12 @@ def create_app(settings: Settings) -> FastAPI:
         thinning_selections,
         robots,
         robot_state,
+        leases,
         link,
         health,
     ):
         app.include_router(module.router)
+    check_rows(app.routes)
     # FastAPI's documented way to extend the document is to replace this method.
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
@@ -77,9 +103,11 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     state.store = PlanStore(engine)
     state.execution_store = ExecutionStore(engine)
     state.links = LinkService()
-    state.solving = SolvingService(settings.workers)
+    state.access = AccessService(TokenStore(engine))
+    state.leases = LeaseService()
+    state.solving = SolvingService(settings.workers, settings.most_waiting_plans)
     state.executions = ExecutionService(
-        state.execution_store, state.store, state.solving, state.links
+        state.execution_store, state.store, state.solving, state.links, state.leases
     )
     state.comparisons = ComparisonService(ComparisonStore(engine), state.solving)
     try:
@@ -103,6 +131,8 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         (ExecutionRequest, "validation"),
         (ComparisonRequest, "validation"),
         (ThinningSelectionRequest, "validation"),
+        (LeaseRequest, "validation"),
+        (LeaseRenewal, "validation"),
         (ProblemDetails, "serialization"),
     ):
         _, definitions = models_json_schema(
@@ -116,6 +146,7 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
             # FastAPI's own form of a validation error, which is never sent.
             _drop_stock_validation_error(operation["responses"])
             operation["responses"] |= {str(code): what for code, what in refused.items()}
+    describe_access(document)
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
     return document

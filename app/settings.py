@@ -1,10 +1,17 @@
 """Settings of the service, from the environment (prefix PRUNUS_) or given."""
 
+import re
 from pathlib import Path
+from typing import Annotated, Final
 
-from pydantic import Field
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import Field, field_validator
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from sqlalchemy import URL, make_url
+
+from app.browser_guard import is_loopback
+
+# As browsers write it: lower case, and no path.
+ORIGIN: Final = re.compile(r"https?://([a-z0-9.-]+|\[[0-9a-f:.]+\])(:[0-9]{1,5})?")
 
 
 class Settings(BaseSettings):
@@ -16,6 +23,11 @@ class Settings(BaseSettings):
         workers: processes that solve.
         body_limit_bytes: larger request bodies get 413.
         sync_targets_limit: larger batches are refused.
+        require_token: demand a token on loopback too, as behind a reverse proxy.
+        rate_limit_per_s, rate_burst: requests of a client, in the long run and at once.
+        most_requests: so many are answered at once; of connections there may be twice as many.
+        most_waiting_plans: so many wait for a solver process.
+        cors_origins: web pages of other origins that may use the service.
     """
 
     model_config = SettingsConfigDict(env_prefix="PRUNUS_", extra="forbid", frozen=True)
@@ -27,6 +39,33 @@ class Settings(BaseSettings):
     workers: int = Field(default=2, ge=1, le=64)
     body_limit_bytes: int = Field(default=8 * 1024 * 1024, ge=1024)
     sync_targets_limit: int = Field(default=2000, ge=1)
+    require_token: bool = False
+    rate_limit_per_s: float = Field(default=500.0, ge=0.1, le=1e6)
+    rate_burst: int = Field(default=1000, ge=1, le=1_000_000)
+    most_requests: int = Field(default=500, ge=1, le=100_000)
+    most_waiting_plans: int = Field(default=64, ge=0, le=10_000)
+    cors_origins: Annotated[tuple[str, ...], NoDecode] = ()
+
+    @field_validator("cors_origins", mode="before")
+    @classmethod
+    def _split(cls, given: object) -> object:
+        """In the environment it is a text with commas."""
+        if isinstance(given, str):
+            return tuple(part.strip() for part in given.split(",") if part.strip())
+        return given
+
+    @field_validator("cors_origins")
+    @classmethod
+    def _exact(cls, origins: tuple[str, ...]) -> tuple[str, ...]:
+        # "*" would let every page in the world move an arm.
+        if not all(map(ORIGIN.fullmatch, origins)):
+            raise ValueError("an origin is http:// or https://, a name, and a port if need be")
+        return origins
+
+    @property
+    def token_required(self) -> bool:
+        """Whether nothing but open routes answers without a token."""
+        return self.require_token or not is_loopback(self.host)
 
     @property
     def resolved_database_url(self) -> URL:

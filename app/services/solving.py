@@ -25,6 +25,9 @@ logger = logging.getLogger(__name__)
 
 Result = TypeVar("Result")
 
+# A plan takes from milliseconds to seconds, so a queue of them is shorter after this.
+OVERLOAD_RETRY_S = 2
+
 
 class SolverLost(Exception):
     """A solver process died over what it was given. The pool has been started again."""
@@ -80,10 +83,17 @@ class _Pool:
 
 
 class SolvingService:
-    """A pool of worker processes that is rebuilt when it breaks."""
+    """A pool of worker processes that is rebuilt when it breaks.
 
-    def __init__(self, workers: int) -> None:
+    Args:
+        workers: how many processes.
+        most_waiting: so many problems may wait for one of them.
+    """
+
+    def __init__(self, workers: int, most_waiting: int) -> None:
         self._workers = workers
+        self._most_waiting = most_waiting
+        self._solving = 0
         self._pool = _Pool(workers)
         self._lock = threading.Lock()
 
@@ -97,8 +107,13 @@ class SolvingService:
         """The answer's body for a problem.
 
         Raises:
-            ProblemError: 503, the worker died over it.
+            ProblemError: 503, the worker died over it, or too many are waiting.
         """
+        if self._solving >= self._workers + self._most_waiting:
+            raise ProblemError(
+                503, "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
+            )
+        self._solving += 1
         try:
             return await self._run(lambda pool: pool.submit(solve_to_json, problem, plan_id))
         except SolverLost:
@@ -108,6 +123,8 @@ class SolvingService:
         except asyncio.CancelledError:
             # Only the server's shutdown cancels a request; its client still gets an answer.
             raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+        finally:
+            self._solving -= 1
 
     async def motions(
         self, request: str, answer: str, execution_id: str

@@ -1,9 +1,10 @@
-"""What persists: plans with the requests they answer, their executions, and comparisons."""
+"""What persists: plans with the requests they answer, their executions, comparisons, and tokens."""
 
 from app.store.comparisons import ComparisonStore
 from app.store.database import open_engine
 from app.store.executions import ExecutionRow, ExecutionStore, RobotBusy
 from app.store.plans import PlanStore, StoredPlan
+from app.store.tokens import TokenRow, TokenStore
 
 __all__ = [
     "ComparisonStore",
@@ -12,5 +13,7 @@ __all__ = [
     "PlanStore",
     "RobotBusy",
     "StoredPlan",
+    "TokenRow",
+    "TokenStore",
     "open_engine",
 ]
