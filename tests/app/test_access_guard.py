@@ -244,7 +244,12 @@ def test_requests_at_once_are_limited_but_for_stops(store: TokenStore) -> None:
         door.app = door.answer
         stopped = await door.knock("POST", STOP_PATH)
         leave.set()
-        answers = [refused, stopped, *await asyncio.gather(*inside), await door.knock("GET", ROBOTS)]
+        answers = [
+            refused,
+            stopped,
+            *await asyncio.gather(*inside),
+            await door.knock("GET", ROBOTS),
+        ]
         return [int(sent[0]["status"]) for sent in answers]
 
     assert asyncio.run(crowd()) == [503, 200, 200, 200, 200]
@@ -281,9 +286,7 @@ def test_a_websocket_of_a_revoked_token_is_closed(store: TokenStore) -> None:
 
     door.app = listening
     messages = tuple({"type": "websocket.receive", "text": text} for text in "123")
-    sent = asyncio.run(
-        door.knock("WEBSOCKET", "/v1/robots/arm/link", token, incoming=messages)
-    )
+    sent = asyncio.run(door.knock("WEBSOCKET", "/v1/robots/arm/link", token, incoming=messages))
     assert [message.get("text") for message in sent[:2]] == ["1", "2"]
     assert sent[2]["type"] == "websocket.close"
     assert sent[2]["code"] == REVOKED
