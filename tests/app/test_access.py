@@ -22,7 +22,12 @@ from app.store import TokenStore, open_engine
 from hardware.messages import Welcome
 from tests.app.conftest import REPOSITORY, Server, assert_problem, running_server, wait_until
 from tests.app.execution_requests import (
-    assert_code, command, executing, make_plan, post, start, wait_for_status,
+    assert_code,
+    command,
+    executing,
+    make_plan,
+    post,
+    wait_for_status,
 )  # fmt: skip
 from tests.app.fake_worker import FakeWorker, closed, hello, link, link_url, state, worker
 
@@ -58,7 +63,7 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Server, 
     environment = {
         "PRUNUS_HOST": "0.0.0.0", "PRUNUS_WORKERS": "1", "PRUNUS_CORS_ORIGINS": ORIGIN,
     }  # fmt: skip
-    with running_server(data_dir, **environment) as server:
+    with running_server(data_dir, stderr=None, **environment) as server:
         assert server.url.startswith("http://0.0.0.0:")
         server = replace(server, url=server.url.replace("0.0.0.0", "127.0.0.1"))
         server.client.headers["authorization"] = f"Bearer {admin}"

@@ -86,7 +86,7 @@ class Door:
 
     def header(self, name: str, method: str, path: str, *authorization: str, **how: Any) -> str:
         sent = asyncio.run(self.knock(method, path, *authorization, **how))
-        return dict(sent[0]["headers"])[name.encode()].decode()
+        return str(dict(sent[0]["headers"])[name.encode()], "ascii")
 
 
 @pytest.fixture

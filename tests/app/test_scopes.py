@@ -5,8 +5,19 @@ from fastapi import APIRouter
 
 from app.main import create_app
 from app.scopes import (
-    ADMIN, ANY, LEASED, OPEN, ROUTES, SCOPES, STOP, UNLIMITED, WEBSOCKET, RouteWithoutScope,
-    check_rows, row_of, served_rows,
+    ADMIN,
+    ANY,
+    LEASED,
+    OPEN,
+    ROUTES,
+    SCOPES,
+    STOP,
+    UNLIMITED,
+    WEBSOCKET,
+    RouteWithoutScope,
+    check_rows,
+    row_of,
+    served_rows,
 )  # fmt: skip
 from app.settings import Settings
 

@@ -11,7 +11,6 @@ import pytest
 from typer.testing import CliRunner
 
 from app.cli import cli
-from app.services import tokens
 from app.services.tokens import BadToken, digest_of, id_of, is_valid, new_token
 from app.settings import Settings
 from app.store import TokenStore, open_engine
@@ -77,7 +76,7 @@ def test_digests_are_compared_in_constant_time(
         compared.append((a, b))
         return original(a, b)
 
-    monkeypatch.setattr(tokens.hmac, "compare_digest", comparing)
+    monkeypatch.setattr("app.services.tokens.hmac.compare_digest", comparing)
     assert is_valid(row, token)
     assert not is_valid(row, other)
     assert not is_valid(None, token)
