@@ -7,18 +7,24 @@ from types import FrameType
 
 import typer
 import uvicorn
+from sqlalchemy.exc import SQLAlchemyError
 
+from app.browser_guard import is_loopback
 from app.connection import Patience, impatient_protocol
 from app.logs import configure_logs
 from app.main import create_app
 from app.processes import READY_LINE
 from app.settings import Settings
+from app.store import TokenStore, open_engine
 from app.traffic import DRAIN_POLL_S, Traffic
 from hardware.instances import instance_names, load_instance
 from solver import InvalidRobot
 
 # Streams and robot links are told to end once the requests are answered, and get this long.
 LAST_S = 5
+# Connections may be open between requests, and there is room left for a stop when the service is
+# busy: what is over this gets uvicorn's own plain 503.
+CONNECTIONS_PER_REQUEST = 2
 # An account of several thousand targets, measured postures and all, has 2 MiB.
 LONGEST_MESSAGE_BYTES = 8 * 1024 * 1024
 
@@ -68,8 +74,8 @@ def run_service(settings: Settings) -> None:
     """Serve until a signal ends it.
 
     Raises:
-        CannotServe: the address is taken or not this machine's, a model file is broken, or the
-            start-up failed.
+        CannotServe: the address is taken or not this machine's, a model file is broken, tokens
+            are required and there is none, or the start-up failed.
     """
     try:
         for name in instance_names():
@@ -81,6 +87,8 @@ def run_service(settings: Settings) -> None:
             settings.data_dir.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise CannotServe(f"cannot use {settings.data_dir}: {error.strerror}") from None
+    if settings.token_required:
+        _check_tokens(settings)
     listener = _bind(settings.host, settings.port)
     configure_logs(settings.log_format, settings.log_level)
     app = create_app(settings)
@@ -92,6 +100,7 @@ def run_service(settings: Settings) -> None:
         access_log=False,
         timeout_keep_alive=settings.keep_alive_s,
         timeout_graceful_shutdown=LAST_S,
+        limit_concurrency=CONNECTIONS_PER_REQUEST * settings.most_requests,
         server_header=False,
         ws_max_size=LONGEST_MESSAGE_BYTES,
         ws_ping_interval=None,  # the link has heartbeats of its own, more of them
@@ -106,6 +115,26 @@ def run_service(settings: Settings) -> None:
         listener.close()
     if not server.started:
         raise CannotServe("the service could not start; the log above says why")
+
+
+def _check_tokens(settings: Settings) -> None:
+    try:
+        engine = open_engine(settings.resolved_database_url)
+        try:
+            found = TokenStore(engine).has_valid()
+        finally:
+            engine.dispose()
+    except SQLAlchemyError:
+        # A driver's message may have the URL in it, and that the password.
+        raise CannotServe("the store does not answer, so there is no looking for tokens") from None
+    if not found:
+        where = (
+            "where PRUNUS_REQUIRE_TOKEN says so" if is_loopback(settings.host) else "off loopback"
+        )
+        raise CannotServe(
+            f"a token is required {where}, and there is none that is valid; "
+            "make one: prunus token create --name NAME --scope SCOPE"
+        )
 
 
 def _bind(host: str, port: int) -> socket.socket:

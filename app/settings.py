@@ -1,17 +1,24 @@
 """Settings of the service: given, from the environment (prefix PRUNUS_), or from a TOML file."""
 
+import re
 import tomllib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 from pydantic_settings import (
     BaseSettings,
+    NoDecode,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
     TomlConfigSettingsSource,
 )
 from sqlalchemy import URL, make_url
+
+from app.browser_guard import is_loopback
+
+# As browsers write it: lower case, and no path.
+ORIGIN: Final = re.compile(r"https?://([a-z0-9.-]+|\[[0-9a-f:.]+\])(:[0-9]{1,5})?")
 
 
 class Settings(BaseSettings):
@@ -31,6 +38,11 @@ class Settings(BaseSettings):
         body_timeout_s: for a whole body.
         write_timeout_s: a client that reads less than 16 KiB of its answer in this time is dropped.
         keep_alive_s: an idle connection is closed after this.
+        require_token: demand a token on loopback too, as behind a reverse proxy.
+        rate_limit_per_s, rate_burst: requests of a client, in the long run and at once.
+        most_requests: so many are answered at once; of connections there may be twice as many.
+        most_waiting_plans: so many wait for a solver process.
+        cors_origins: web pages of other origins that may use the service.
     """
 
     model_config = SettingsConfigDict(env_prefix="PRUNUS_", extra="forbid", frozen=True)
@@ -50,6 +62,33 @@ class Settings(BaseSettings):
     body_timeout_s: float = Field(default=120.0, ge=0.1, le=3600)
     write_timeout_s: float = Field(default=30.0, ge=0.1, le=3600)
     keep_alive_s: int = Field(default=15, ge=1, le=3600)
+    require_token: bool = False
+    rate_limit_per_s: float = Field(default=500.0, ge=0.1, le=1e6)
+    rate_burst: int = Field(default=1000, ge=1, le=1_000_000)
+    most_requests: int = Field(default=500, ge=1, le=100_000)
+    most_waiting_plans: int = Field(default=64, ge=0, le=10_000)
+    cors_origins: Annotated[tuple[str, ...], NoDecode] = ()
+
+    @field_validator("cors_origins", mode="before")
+    @classmethod
+    def _split(cls, given: object) -> object:
+        """In the environment it is a text with commas."""
+        if isinstance(given, str):
+            return tuple(part.strip() for part in given.split(",") if part.strip())
+        return given
+
+    @field_validator("cors_origins")
+    @classmethod
+    def _exact(cls, origins: tuple[str, ...]) -> tuple[str, ...]:
+        # "*" would let every page in the world move an arm.
+        if not all(map(ORIGIN.fullmatch, origins)):
+            raise ValueError("an origin is http:// or https://, a name, and a port if need be")
+        return origins
+
+    @property
+    def token_required(self) -> bool:
+        """Whether nothing but open routes answers without a token."""
+        return self.require_token or not is_loopback(self.host)
 
     @property
     def resolved_database_url(self) -> URL:

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.common import body_of, json_body, lease_of, problem_answers
 from app.schemas.executions import (
     ExecutionAnswer,
     ExecutionRequest,
@@ -37,7 +37,9 @@ async def create_execution(request: Request) -> Response:
     A robot has one active execution at most.
     """
     given = ExecutionRequest.model_validate_json(await json_body(request))
-    execution = await _service(request).create(given.plan_id, given.robot)
+    execution = await _service(request).create(
+        given.plan_id, given.robot, lease_id=lease_of(request)
+    )
     answer = _accepted(execution)
     answer.headers["Location"] = f"/v1/executions/{execution.id}"
     return answer
@@ -80,7 +82,7 @@ async def get_execution(execution_id: str, request: Request) -> Response:
 )
 async def pause_execution(execution_id: str, request: Request) -> Response:
     """Only one that is executing; it is paused when its status says so."""
-    return _accepted(await _service(request).pause(execution_id))
+    return _accepted(await _service(request).pause(execution_id, lease_id=lease_of(request)))
 
 
 @router.post(
@@ -92,7 +94,7 @@ async def pause_execution(execution_id: str, request: Request) -> Response:
 )
 async def resume_execution(execution_id: str, request: Request) -> Response:
     """Only one that is paused."""
-    return _accepted(await _service(request).resume(execution_id))
+    return _accepted(await _service(request).resume(execution_id, lease_id=lease_of(request)))
 
 
 @router.post(
@@ -104,7 +106,7 @@ async def resume_execution(execution_id: str, request: Request) -> Response:
 )
 async def cancel_execution(execution_id: str, request: Request) -> Response:
     """One that the arm cannot have begun is canceled at once, another when its status says so."""
-    return _accepted(await _service(request).cancel(execution_id))
+    return _accepted(await _service(request).cancel(execution_id, lease_id=lease_of(request)))
 
 
 def _service(request: Request) -> ExecutionService:

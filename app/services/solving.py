@@ -29,6 +29,9 @@ logger = logging.getLogger(__name__)
 
 Result = TypeVar("Result")
 
+# A plan takes from milliseconds to seconds, so a queue of them is shorter after this.
+OVERLOAD_RETRY_S = 2
+
 
 class SolverLost(Exception):
     """A solver process died over what it was given. The pool has been started again."""
@@ -104,6 +107,7 @@ class SolvingService:
 
     Args:
         workers: how many processes.
+        most_waiting: so many problems may wait for one of them.
         measures: who counts what they do.
         logs: how they log.
     """
@@ -111,13 +115,15 @@ class SolvingService:
     def __init__(
         self,
         workers: int,
+        most_waiting: int,
         measures: Measures | None = None,
         logs: LogOptions | None = None,
     ) -> None:
         self._workers = workers
+        self._most_waiting = most_waiting
         self._measures = measures or NoMeasures()
         self._logs = logs or LogOptions()
-        self._tasks = 0
+        self._tasks = self._solving = 0
         self._pool = _Pool(workers, self._logs)
         self._lock = threading.Lock()
 
@@ -131,8 +137,13 @@ class SolvingService:
         """The answer's body for a problem.
 
         Raises:
-            ProblemError: 503, the worker died over it.
+            ProblemError: 503, the worker died over it, or too many are waiting.
         """
+        if self._solving >= self._workers + self._most_waiting:
+            raise ProblemError(
+                503, "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
+            )
+        self._solving += 1
         try:
             answer, figures = await self._run(
                 lambda pool: pool.submit(solve_to_json, problem, plan_id)
@@ -144,6 +155,8 @@ class SolvingService:
         except asyncio.CancelledError:
             # Only the server's shutdown cancels a request; its client still gets an answer.
             raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+        finally:
+            self._solving -= 1
         self._measures.solved(figures)
         return answer
 
