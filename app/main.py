@@ -14,6 +14,7 @@ from app.browser_guard import BrowserGuardMiddleware
 from app.errors import install_error_handlers
 from app.routers import (
     comparisons,
+    documentation,
     executions,
     health,
     link,
@@ -45,7 +46,7 @@ def create_app(settings: Settings) -> FastAPI:
         description="Decides how a robot arm reaches for blossoms in a tree. "
         "Metres, radians and seconds in the robot's base frame throughout.",
         lifespan=_lifespan,
-        # The stock pages load their scripts from elsewhere; this must work offline.
+        # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
         docs_url=None,
         redoc_url=None,
     )
@@ -62,8 +63,10 @@ def create_app(settings: Settings) -> FastAPI:
         robot_state,
         link,
         health,
+        documentation,
     ):
         app.include_router(module.router)
+    documentation.mount_files(app)
     # FastAPI's documented way to extend the document is to replace this method.
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
