@@ -22,6 +22,7 @@ from app.metrics import Metrics
 from app.request_log import RequestLogMiddleware
 from app.routers import (
     comparisons,
+    documentation,
     executions,
     frames,
     health,
@@ -70,7 +71,7 @@ def create_app(settings: Settings) -> FastAPI:
         description="Decides how a robot arm reaches for blossoms in a tree. "
         "Metres, radians and seconds in the robot's base frame throughout.",
         lifespan=_lifespan,
-        # The stock pages load their scripts from elsewhere; this must work offline.
+        # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
         docs_url=None,
         redoc_url=None,
     )
@@ -116,9 +117,11 @@ def create_app(settings: Settings) -> FastAPI:
         link,
         health,
         metrics,
+        documentation,
     ):
         app.include_router(module.router)
     check_rows(app.routes)
+    documentation.mount_files(app)
     # FastAPI's documented way to extend the document is to replace this method.
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app

@@ -19,7 +19,7 @@ router = APIRouter(prefix="/v1/executions", tags=["executions"])
 
 @router.post(
     "",
-    operation_id="createExecution",
+    operation_id="create_execution",
     status_code=202,
     summary="Execute a plan",
     responses={
@@ -47,7 +47,7 @@ async def create_execution(request: Request) -> Response:
 
 @router.get(
     "",
-    operation_id="listExecutions",
+    operation_id="list_executions",
     summary="The newest 50, newest first",
     responses={200: {"model": ExecutionsAnswer}, **problem_answers(500)},
 )
@@ -63,7 +63,7 @@ async def list_executions(
 
 @router.get(
     "/{execution_id}",
-    operation_id="getExecution",
+    operation_id="get_execution",
     summary="How an execution stands",
     responses={200: {"model": ExecutionAnswer}, **problem_answers(404, 500)},
 )
@@ -75,7 +75,7 @@ async def get_execution(execution_id: str, request: Request) -> Response:
 
 @router.post(
     "/{execution_id}/pause",
-    operation_id="pauseExecution",
+    operation_id="pause_execution",
     status_code=202,
     summary="Slow down to a stand on the path",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
@@ -87,7 +87,7 @@ async def pause_execution(execution_id: str, request: Request) -> Response:
 
 @router.post(
     "/{execution_id}/resume",
-    operation_id="resumeExecution",
+    operation_id="resume_execution",
     status_code=202,
     summary="Go on along the path",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
@@ -99,7 +99,7 @@ async def resume_execution(execution_id: str, request: Request) -> Response:
 
 @router.post(
     "/{execution_id}/cancel",
-    operation_id="cancelExecution",
+    operation_id="cancel_execution",
     status_code=202,
     summary="Slow down to a stand on the path and end there",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},

@@ -14,7 +14,7 @@ from app.traffic import RETRY_S, Traffic
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz", operation_id="getHealth", summary="The process answers")
+@router.get("/healthz", operation_id="get_health", summary="The process answers")
 async def get_health() -> HealthAnswer:
     """Needs nothing but the event loop."""
     return HealthAnswer(status="ok")
@@ -22,7 +22,7 @@ async def get_health() -> HealthAnswer:
 
 @router.get(
     "/readyz",
-    operation_id="getReadiness",
+    operation_id="get_readiness",
     summary="The solver is warm and the store answers",
     responses=problem_answers(503),
 )

@@ -26,7 +26,7 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
 
 @router.post(
     "",
-    operation_id="createPlan",
+    operation_id="create_plan",
     status_code=201,
     summary="Plan an approach for every target",
     responses={
@@ -70,7 +70,7 @@ def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Probl
 
 @router.get(
     "/{plan_id}",
-    operation_id="getPlan",
+    operation_id="get_plan",
     summary="The plan again",
     responses={
         200: {

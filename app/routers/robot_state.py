@@ -26,7 +26,7 @@ NO_ANSWER = (
 
 @router.get(
     "/state",
-    operation_id="getRobotState",
+    operation_id="get_robot_state",
     summary="The robot as it is now",
     responses={200: {"model": RobotStateAnswer}, **problem_answers(404, 500)},
 )
@@ -48,7 +48,7 @@ async def get_robot_state(name: str, request: Request) -> Response:
 
 @router.post(
     "/stop",
-    operation_id="stopRobot",
+    operation_id="stop_robot",
     summary="Stop at once, whatever the robot does",
     responses={200: {"model": StopAnswer}, **problem_answers(404, 500, 503)},
 )
@@ -77,7 +77,7 @@ async def stop_robot(name: str, request: Request) -> Response:
 
 @router.post(
     "/acknowledge",
-    operation_id="acknowledgeFaults",
+    operation_id="acknowledge_faults",
     summary="A person has seen the faults",
     responses={200: {"model": AcknowledgeAnswer}, **problem_answers(404, 409, 500, 503)},
 )
