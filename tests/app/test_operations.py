@@ -99,7 +99,7 @@ def command(*arguments: str) -> subprocess.CompletedProcess[str]:
 def test_slow_clients_are_dropped(tmp_path: Path, request_body: Body) -> None:
     limits = {"HEAD_TIMEOUT_S": "1", "BODY_IDLE_TIMEOUT_S": "1", "BODY_TIMEOUT_S": "2"}
     limits |= {"WRITE_TIMEOUT_S": "1", "WORKERS": "1"}
-    environment = {f"PRUNUS_{name}": value for name, value in limits.items()}
+    environment: dict[str, Any] = {f"PRUNUS_{name}": value for name, value in limits.items()}
     with running_server(tmp_path, **environment) as server:
         head = b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9000\r\n\r\n"
         for sent, drip in ((b"", b""), (b"", b"G"), (head, b" "), (head, b"")):
