@@ -30,10 +30,17 @@ from app.schemas.requests import PlanRequest
 from app.schemas.thinning_selections import ThinningSelectionRequest
 from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
+from app.services.idempotency import IdempotencyService
 from app.services.links import LinkService
 from app.services.solving import SolvingService
 from app.settings import Settings
-from app.store import ComparisonStore, ExecutionStore, PlanStore, open_engine
+from app.store import (
+    ComparisonStore,
+    ExecutionStore,
+    IdempotencyStore,
+    PlanStore,
+    open_engine,
+)
 from app.version import prunus_version
 
 
@@ -76,6 +83,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
     state.store = PlanStore(engine)
     state.execution_store = ExecutionStore(engine)
+    state.idempotency = IdempotencyService(IdempotencyStore(engine))
     state.links = LinkService()
     state.solving = SolvingService(settings.workers)
     state.executions = ExecutionService(
