@@ -47,6 +47,7 @@ from app.services.access import AccessService
 from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
 from app.services.frames import FrameService
+from app.services.idempotency import IdempotencyService
 from app.services.leases import LeaseService
 from app.services.links import LinkService
 from app.services.solving import LogOptions, SolvingService
@@ -55,6 +56,7 @@ from app.store import (
     ComparisonStore,
     ExecutionStore,
     FrameStore,
+    IdempotencyStore,
     PlanStore,
     TokenStore,
     open_engine,
@@ -135,6 +137,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     state.store = PlanStore(engine)
     state.execution_store = ExecutionStore(engine)
     state.frames = FrameService(FrameStore(engine))
+    state.idempotency = IdempotencyService(IdempotencyStore(engine))
     state.links = LinkService()
     state.engine = engine
     event.listen(engine, "handle_error", lambda _: state.metrics.store_failed())

@@ -6,13 +6,15 @@ from pydantic import MISSING
 
 from app.reports.html import content_security_policy
 from app.routers.common import body_of, json_body, problem_answers
+from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.comparisons import (
     ComparisonAnswer,
     ComparisonRequest,
     ScenarioAnswer,
     ScenariosAnswer,
 )
-from app.services.comparisons import ComparisonService
+from app.services.comparisons import ComparisonService, location_of
+from app.store import NewKey
 from solver.comparison.registry import SCENARIOS
 
 HTML = "text/html"
@@ -42,26 +44,32 @@ def list_scenarios() -> Response:
     responses={
         202: {
             "model": ComparisonAnswer,
-            "headers": {"Location": {"schema": {"type": "string"}}},
+            "headers": CREATED_HEADERS,
         },
         **problem_answers(413, 415, 422, 500, 503),
     },
-    openapi_extra=body_of(ComparisonRequest),
+    openapi_extra=with_key(body_of(ComparisonRequest)),
 )
 async def create_comparison(request: Request) -> Response:
     """It is queued; comparisons run one after the other, about a minute each."""
-    given = ComparisonRequest.model_validate_json(await json_body(request))
-    document = await _service(request).create(
-        given.scenario,
-        None if given.methods is MISSING else tuple(given.methods),
-        None if given.repeats is MISSING else given.repeats,
-    )
-    return Response(
-        orjson.dumps(document),
-        202,
-        media_type="application/json",
-        headers={"Location": f"/v1/comparisons/{document['id']}"},
-    )
+    body = await json_body(request)
+
+    async def create(key: NewKey | None) -> Response:
+        given = ComparisonRequest.model_validate_json(body)
+        document = await _service(request).create(
+            given.scenario,
+            None if given.methods is MISSING else tuple(given.methods),
+            None if given.repeats is MISSING else given.repeats,
+            key,
+        )
+        return Response(
+            orjson.dumps(document),
+            202,
+            media_type="application/json",
+            headers={"Location": location_of(document)},
+        )
+
+    return await once(request, body, create)
 
 
 @router.get(

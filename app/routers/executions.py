@@ -4,6 +4,7 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, lease_of, problem_answers
+from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.executions import (
     ExecutionAnswer,
     ExecutionRequest,
@@ -12,7 +13,7 @@ from app.schemas.executions import (
 )
 from app.services.execution_record import Execution, execution_to_json
 from app.services.executions import ExecutionService
-from app.store import ExecutionRow, ExecutionStore
+from app.store import ExecutionRow, ExecutionStore, NewKey
 
 router = APIRouter(prefix="/v1/executions", tags=["executions"])
 
@@ -25,24 +26,30 @@ router = APIRouter(prefix="/v1/executions", tags=["executions"])
     responses={
         202: {
             "model": ExecutionAnswer,
-            "headers": {"Location": {"schema": {"type": "string"}}},
+            "headers": CREATED_HEADERS,
         },
         **problem_answers(404, 409, 413, 415, 422, 500, 503),
     },
-    openapi_extra=body_of(ExecutionRequest),
+    openapi_extra=with_key(body_of(ExecutionRequest)),
 )
 async def create_execution(request: Request) -> Response:
     """Motions are built and verified anew, then sent once; the arm moves if its worker agrees.
 
-    A robot has one active execution at most.
+    A robot has one active execution at most. Whoever sends it again without a key, because no
+    answer came, may have the arm move twice.
     """
-    given = ExecutionRequest.model_validate_json(await json_body(request))
-    execution = await _service(request).create(
-        given.plan_id, given.robot, lease_id=lease_of(request)
-    )
-    answer = _accepted(execution)
-    answer.headers["Location"] = f"/v1/executions/{execution.id}"
-    return answer
+    body = await json_body(request)
+
+    async def create(key: NewKey | None) -> Response:
+        given = ExecutionRequest.model_validate_json(body)
+        execution = await _service(request).create(
+            given.plan_id, given.robot, key, lease_id=lease_of(request)
+        )
+        answer = _accepted(execution)
+        answer.headers["Location"] = execution.location
+        return answer
+
+    return await once(request, body, create)
 
 
 @router.get(

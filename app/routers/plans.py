@@ -10,13 +10,14 @@ from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError, invalid_request
 from app.routers.common import body_of, json_body, problem_answers
+from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.answers import PlanAnswer
 from app.schemas.requests import PlanRequest
 from app.services.frames import FrameService
 from app.services.sent_frames import FindFrame, stored_request
 from app.services.solving import SolvingService
 from app.services.wire import parse_request, problem_from_wire
-from app.store import PlanStore
+from app.store import NewKey, PlanStore, new_entry
 from solver import Fault, Problem
 
 NDJSON = "application/x-ndjson"
@@ -32,30 +33,41 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
     responses={
         201: {
             "model": PlanAnswer,
-            "headers": {"Location": {"schema": {"type": "string"}}},
+            "headers": CREATED_HEADERS,
         },
         **problem_answers(413, 415, 422, 500, 503),
     },
-    openapi_extra=body_of(PlanRequest),
+    openapi_extra=with_key(body_of(PlanRequest)),
 )
 async def create_plan(request: Request) -> Response:
     """Targets that cannot be reached come back infeasible, with a reason."""
     body = await json_body(request)
+    store: PlanStore = request.app.state.store
+    return await once(request, body, lambda key: _create(request, body, key), read=store.answer)
+
+
+async def _create(request: Request, body: bytes, key: NewKey | None) -> Response:
     limit: int = request.app.state.settings.sync_targets_limit
     frames: FrameService = request.app.state.frames
     problem, normalised = await run_in_threadpool(_read, body, limit, frames.transform)
     plan_id = uuid.uuid4().hex
+    location = f"/v1/plans/{plan_id}"
     solving: SolvingService = request.app.state.solving
     answer = await solving.solve(problem, plan_id)
     store: PlanStore = request.app.state.store
     await run_in_threadpool(
-        store.add, plan_id, robot=problem.robot.name, request=normalised, answer=answer.decode()
+        store.add,
+        plan_id,
+        robot=problem.robot.name,
+        request=normalised,
+        answer=answer.decode(),
+        key=new_entry(key, 201, location),
     )
     return Response(
         answer,
         status_code=201,
         media_type="application/json",
-        headers={"Location": f"/v1/plans/{plan_id}"},
+        headers={"Location": location},
     )
 
 

@@ -15,7 +15,7 @@ from app.errors import ProblemError, invalid_request
 from app.reports.html import waiting_page
 from app.services.comparing import ComparisonOrder, prepare, read_progress
 from app.services.solving import SolverLost, SolvingService
-from app.store import ComparisonStore
+from app.store import ComparisonStore, NewKey, new_entry
 from hardware.clock import timestamp
 from solver import Fault
 from solver.comparison.registry import SCENARIOS
@@ -39,6 +39,11 @@ class _Work:
     order: ComparisonOrder
 
 
+def location_of(document: Document) -> str:
+    """A comparison's path."""
+    return f"/v1/comparisons/{document['id']}"
+
+
 class ComparisonService:
     """The comparisons of the service. It lives on the event loop and is used there only.
 
@@ -60,11 +65,16 @@ class ComparisonService:
             await self._end(orjson.loads(text), {"status": FAILED, "detail": detail})
 
     async def create(
-        self, scenario: str, methods: tuple[str, ...] | None, repeats: int | None
+        self,
+        scenario: str,
+        methods: tuple[str, ...] | None,
+        repeats: int | None,
+        key: NewKey | None = None,
     ) -> Document:
         """Take on a comparison; it is stored as queued when this returns.
 
         Raises:
+            KeyTaken: something was created under the key before.
             ProblemError: 422, there is no such scenario or method; 503, too many are waiting.
         """
         if faults := await run_in_threadpool(_faults, scenario, methods, repeats):
@@ -80,8 +90,13 @@ class ComparisonService:
         if repeats is not None:
             document["repeats"] = repeats
         document |= {"status": QUEUED, "created_at": timestamp()}
+        text = _json(document)
         await run_in_threadpool(
-            self._store.add, comparison_id, scenario=scenario, document=_json(document)
+            self._store.add,
+            comparison_id,
+            scenario=scenario,
+            document=text,
+            key=new_entry(key, 202, location_of(document), text),
         )
         order = ComparisonOrder(scenario, methods, repeats, self._progress_file(comparison_id))
         task = asyncio.create_task(self._run(_Work(document, order)))

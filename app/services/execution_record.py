@@ -67,6 +67,11 @@ class Execution:
     error: Failure | None = None
 
     @property
+    def location(self) -> str:
+        """Its path."""
+        return f"/v1/executions/{self.id}"
+
+    @property
     def ended(self) -> bool:
         """Whether nothing of it is to come any more."""
         return self.status in ENDED

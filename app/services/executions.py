@@ -38,7 +38,7 @@ from app.services.execution_record import (
 from app.services.leases import LeaseService
 from app.services.links import Link, LinkService
 from app.services.solving import SolverLost, SolvingService
-from app.store import ExecutionStore, PlanStore, RobotBusy
+from app.store import ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
 from hardware.clock import timestamp
 from hardware.messages import (
     CANCELED,
@@ -108,13 +108,16 @@ class ExecutionService:
             execution = execution_from_json(document)
             await self._fail(execution, SERVICE_RESTARTED, "the service was started again")
 
-    async def create(self, plan_id: str, robot: str, *, lease_id: str = "") -> Execution:
+    async def create(
+        self, plan_id: str, robot: str, key: NewKey | None = None, *, lease_id: str = ""
+    ) -> Execution:
         """Take on an execution of a plan; it is stored as queued when this returns.
 
         While somebody has a lease of the robot, `lease_id` must be its id, here and below.
 
         Raises:
             ProblemError: it is not taken on, and why.
+            KeyTaken: something was created under the key before.
         """
         plan = await ordered_plan(self._plans, plan_id, robot)
         async with self._lock(robot):
@@ -135,12 +138,13 @@ class ExecutionService:
                 created_at=now,
                 targets=plan.targets(now),
             )
-            await self._add(execution)
+            await self._add(execution, key)
             order = self._orders[robot] = _Order(execution.id, link)
             self._start(self._prepare(order, plan))
         return execution
 
-    async def _add(self, execution: Execution) -> None:
+    async def _add(self, execution: Execution, key: NewKey | None) -> None:
+        document = execution_to_json(execution)
         try:
             await run_in_threadpool(
                 self._store.add,
@@ -149,7 +153,8 @@ class ExecutionService:
                 robot=execution.robot,
                 status=execution.status,
                 created_at=datetime.fromisoformat(execution.created_at),
-                document=execution_to_json(execution),
+                document=document,
+                key=new_entry(key, 202, execution.location, document),
             )
         except RobotBusy:
             raise ProblemError(409, "busy", "The robot has an active execution.") from None

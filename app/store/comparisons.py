@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from sqlalchemy import Engine, func, insert, select, update
 
 from app.store.database import writing
+from app.store.idempotency import NewEntry, insert_key
 from app.store.plans import ID
 from app.store.tables import COMPARISONS
 
@@ -19,8 +20,14 @@ class ComparisonStore:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
 
-    def add(self, comparison_id: str, *, scenario: str, document: str) -> None:
-        """Store a new comparison, which is active."""
+    def add(
+        self, comparison_id: str, *, scenario: str, document: str, key: NewEntry | None = None
+    ) -> None:
+        """Store a new comparison, which is active, with the key it was asked for under.
+
+        Raises:
+            KeyTaken: something was created under the key before; nothing was stored.
+        """
         now = datetime.now(UTC)
         row = {
             "id": comparison_id,
@@ -31,6 +38,7 @@ class ComparisonStore:
             "document": document,
         }
         with writing(self._engine).begin() as connection:
+            insert_key(connection, key)
             connection.execute(insert(COMPARISONS), row)
 
     def save(

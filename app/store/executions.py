@@ -9,6 +9,7 @@ from sqlalchemy import Engine, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from app.store.database import writing
+from app.store.idempotency import NewEntry, insert_key
 from app.store.plans import ID
 from app.store.tables import EXECUTIONS
 
@@ -53,10 +54,12 @@ class ExecutionStore:
         status: str,
         created_at: datetime,
         document: str,
+        key: NewEntry | None = None,
     ) -> None:
-        """Store a new execution, which is active.
+        """Store a new execution, which is active, with the key it was asked for under.
 
         Raises:
+            KeyTaken: something was created under the key before; nothing was stored.
             RobotBusy: the robot has an active one; nothing was stored.
         """
         row = {
@@ -71,6 +74,7 @@ class ExecutionStore:
         }
         try:
             with writing(self._engine).begin() as connection:
+                insert_key(connection, key)
                 connection.execute(insert(EXECUTIONS), row)
         except IntegrityError as error:
             raise RobotBusy(robot) from error

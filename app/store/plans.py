@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from sqlalchemy import Engine, insert, select
 
 from app.store.database import writing
+from app.store.idempotency import NewEntry, insert_key
 from app.store.tables import PLANS
 
 ID = re.compile(r"[0-9a-f]{32}")
@@ -26,8 +27,20 @@ class PlanStore:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
 
-    def add(self, plan_id: str, *, robot: str, request: str, answer: str) -> None:
-        """Store a plan; it is durable when this returns."""
+    def add(
+        self,
+        plan_id: str,
+        *,
+        robot: str,
+        request: str,
+        answer: str,
+        key: NewEntry | None = None,
+    ) -> None:
+        """Store a plan, with the key it was asked for under; both are durable when this returns.
+
+        Raises:
+            KeyTaken: something was created under the key before; nothing was stored.
+        """
         row = {
             "id": plan_id,
             "created_at": datetime.now(UTC),
@@ -36,6 +49,7 @@ class PlanStore:
             "answer": answer,
         }
         with writing(self._engine).begin() as connection:
+            insert_key(connection, key)
             connection.execute(insert(PLANS), row)
 
     def answer(self, plan_id: str) -> str | None:

@@ -1,0 +1,67 @@
+"""Once and only once: what is created under a key, and its answer again for every duplicate."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import TypeVar
+from weakref import WeakValueDictionary
+
+from starlette.concurrency import run_in_threadpool
+
+from app.errors import ProblemError
+from app.store import IdempotencyStore, KeyedAnswer, KeyTaken, NewKey
+
+Created = TypeVar("Created")
+
+
+class IdempotencyService:
+    """Lives on the event loop and is used there only."""
+
+    def __init__(self, store: IdempotencyStore) -> None:
+        self._store = store
+        # A lock lives as long as somebody holds it or waits for it.
+        self._locks: WeakValueDictionary[tuple[str, str], asyncio.Lock] = WeakValueDictionary()
+
+    async def once(
+        self, key: NewKey, create: Callable[[], Awaitable[Created]]
+    ) -> Created | KeyedAnswer:
+        """What `create` gives, or the answer that is stored under the key.
+
+        `create` must store the key in the transaction that stores what it creates. When it raises,
+        nothing is stored, and the next with this key runs it again. A duplicate waits for the one
+        under way; duplicates that reach other services of the same database do not wait, but lose
+        against the key that is stored first.
+
+        Raises:
+            ProblemError: 422, the key stands for another body; whatever `create` raises.
+        """
+        lock = self._locks.setdefault((key.scope, key.key), asyncio.Lock())
+        try:
+            await lock.acquire()
+        except asyncio.CancelledError:
+            # Only the server's shutdown cancels a request; its client still gets an answer.
+            raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+        try:
+            stored = await self._find(key)
+            if stored is not None:
+                return stored
+            try:
+                return await create()
+            except KeyTaken:
+                stored = await self._find(key)
+                if stored is None:
+                    raise
+                return stored
+        finally:
+            lock.release()
+
+    async def _find(self, key: NewKey) -> KeyedAnswer | None:
+        stored = await run_in_threadpool(self._store.find, key.scope, key.key)
+        if stored is None:
+            return None
+        if stored.digest != key.digest:
+            raise ProblemError(
+                422,
+                "idempotency_key_reused",
+                "This Idempotency-Key was used for another body; take a new key for a new request.",
+            )
+        return stored.answer
