@@ -14,6 +14,7 @@ from app.schemas.executions import (
 from app.services.execution_record import Execution, execution_to_json
 from app.services.executions import ExecutionService
 from app.store import ExecutionRow, ExecutionStore, NewKey
+from hardware.clock import instant_text
 
 router = APIRouter(prefix="/v1/executions", tags=["executions"])
 
@@ -126,15 +127,11 @@ def _accepted(execution: Execution) -> Response:
 
 
 def _summary(row: ExecutionRow) -> ExecutionSummary:
-    created, updated = (
-        instant.isoformat(timespec="milliseconds").replace("+00:00", "Z")
-        for instant in (row.created_at, row.updated_at)
-    )
     return ExecutionSummary(
         id=row.id,
         plan_id=row.plan_id,
         robot=row.robot,
         status=row.status,
-        created_at=created,
-        updated_at=updated,
+        created_at=instant_text(row.created_at),
+        updated_at=instant_text(row.updated_at),
     )

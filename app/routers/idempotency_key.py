@@ -51,7 +51,7 @@ def with_key(operation: dict[str, Any]) -> dict[str, Any]:
             "pattern": "^[!-~]+$",
         },
     }
-    return {"parameters": [parameter], **operation}
+    return {**operation, "parameters": [parameter, *operation.get("parameters", ())]}
 
 
 async def once(

@@ -57,8 +57,9 @@ class LogOptions:
     level: str = "info"
 
 
-def _start_worker(lifeline: Connection, logs: LogOptions) -> None:
+def _start_worker(lifeline: Connection, logs: LogOptions, prepare: Callable[[], None]) -> None:
     configure_logs(logs.log_format, logs.level)
+    prepare()
     # Ctrl-C reaches the whole process group; the service decides when its workers end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_service, args=(lifeline,), daemon=True).start()
@@ -77,26 +78,38 @@ def _is_warm() -> bool:
     return True
 
 
-class _Pool:
-    """An executor and the pipe its workers hang on."""
+def _nothing() -> None:
+    pass
 
-    def __init__(self, workers: int, logs: LogOptions) -> None:
+
+class Pool:
+    """An executor and the pipe its workers hang on; `prepare` runs in each of them first."""
+
+    def __init__(
+        self, workers: int, logs: LogOptions, prepare: Callable[[], None] = _nothing
+    ) -> None:
         context = multiprocessing.get_context("spawn")
         self._far_end, self._near_end = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(
-            workers, mp_context=context, initializer=_start_worker, initargs=(self._far_end, logs)
+            workers,
+            mp_context=context,
+            initializer=_start_worker,
+            initargs=(self._far_end, logs, prepare),
         )
         self.warming: list[Future[bool]] = [self.executor.submit(_is_warm) for _ in range(workers)]
 
     @property
     def is_warm(self) -> bool:
+        """Whether every worker is there and has its kernels."""
         return all(future.done() and not future.exception() for future in self.warming)
 
     @property
     def is_lost(self) -> bool:
+        """Whether a worker died warming up."""
         return any(future.done() and future.exception() for future in self.warming)
 
     def close(self) -> None:
+        """End the workers at once, whatever they do."""
         self._near_end.close()
         self.executor.shutdown(wait=True, cancel_futures=True)
         self._far_end.close()
@@ -124,7 +137,7 @@ class SolvingService:
         self._measures = measures or NoMeasures()
         self._logs = logs or LogOptions()
         self._tasks = self._solving = 0
-        self._pool = _Pool(workers, self._logs)
+        self._pool = Pool(workers, self._logs)
         self._lock = threading.Lock()
 
     async def is_ready(self) -> bool:
@@ -203,11 +216,11 @@ class SolvingService:
         running = min(self._tasks, self._workers)
         self._measures.solver_load(running, self._tasks - running)
 
-    def _replace(self, broken: _Pool) -> _Pool:
+    def _replace(self, broken: Pool) -> Pool:
         with self._lock:
             if self._pool is broken:
                 logger.error("a solver process died; the pool is rebuilt")
-                self._pool = _Pool(self._workers, self._logs)
+                self._pool = Pool(self._workers, self._logs)
                 broken.close()
             return self._pool
 

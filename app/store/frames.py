@@ -8,6 +8,7 @@ from sqlalchemy import Engine, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from app.store.database import writing
+from app.store.instants import utc
 from app.store.tables import FRAMES
 
 MOST_FRAMES = 1000
@@ -59,7 +60,7 @@ class FrameStore:
         with writing(self._engine).begin() as connection:
             created_at = connection.execute(there).scalar_one_or_none()
             if created_at is not None:
-                text = document(_utc(created_at), now)
+                text = document(utc(created_at), now)
                 changes = update(FRAMES).where(FRAMES.c.name == name)
                 connection.execute(changes.values(updated_at=now, document=text))
                 return StoredFrame(text, is_new=False)
@@ -89,8 +90,3 @@ class FrameStore:
         """Whether there was a frame of that name; now there is none."""
         with writing(self._engine).begin() as connection:
             return connection.execute(delete(FRAMES).where(FRAMES.c.name == name)).rowcount > 0
-
-
-def _utc(instant: datetime) -> datetime:
-    # SQLite keeps no time zone; PostgreSQL gives back the session's.
-    return instant.replace(tzinfo=UTC) if instant.tzinfo is None else instant.astimezone(UTC)
