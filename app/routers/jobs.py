@@ -12,6 +12,7 @@ from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 from app.routers.common import NDJSON, problem_answers, wants_lines
 from app.schemas.jobs import JobAnswer, JobResultsAnswer, JobsAnswer
 from app.services.jobs import JobService
+from app.services.parts import joined_arrays
 from app.services.plan_reading import lines_of
 from app.services.wire import present
 from app.store import JobRow, PlanStore
@@ -123,13 +124,9 @@ async def get_job_results(job_id: str, request: Request) -> Response:
 
 
 def _array(store: PlanStore, job_id: str) -> Iterator[bytes]:
-    yield b'{"approaches":['
-    between = b""
-    for part in store.parts(job_id):
-        if inside := part[1:-1].encode():
-            yield between + inside
-            between = b","
-    yield b"]}"
+    yield b'{"approaches":'
+    yield from joined_arrays(part.encode() for part in store.parts(job_id))
+    yield b"}"
 
 
 async def _following(

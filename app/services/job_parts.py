@@ -7,8 +7,8 @@ from typing import Any
 
 import orjson
 
+from app.services import parts
 from app.services.measures import PlanFigures
-from app.services.solving import plan_figures
 from app.services.wire import parse_stored_request, plan_to_wire, problem_from_wire
 from app.store.jobs import NewPart
 from solver import Plan, Problem
@@ -19,7 +19,6 @@ from solver.staged import (
     choice_to_json,
     choose,
     next_reference,
-    plan_part,
 )
 
 logger = logging.getLogger(__name__)
@@ -68,9 +67,7 @@ def solve_part(
     assert choice is not None, "parts come after the choice"
     logger.info("job part started", extra={"job_id": job_id, "part": number})
     began = tuple(json.loads(reference)) if reference is not None else problem.start
-    plan = solved(problem, choice, first, part_targets(problem), began)
-    after = next_reference(problem, plan.approaches, began)
-    approaches = plan_to_wire(plan, job_id)["approaches"]
+    plan, solved = parts.solve_part(problem, choice, first, part_targets(problem), began)
     part = NewPart(
         number=number,
         first=first,
@@ -78,21 +75,10 @@ def solve_part(
         infeasible=plan.infeasible,
         total_effort=plan.total_effort,
         elapsed_s=plan.elapsed_s,
-        reference=json.dumps(after),
-        approaches=orjson.dumps(approaches).decode(),
+        reference=json.dumps(next_reference(problem, plan.approaches, began)),
+        approaches=solved.approaches.decode(),
     )
-    return part, plan_figures(problem, plan)
-
-
-def solved(
-    problem: Problem, choice: Choice, first: int, count: int, began: tuple[float, ...]
-) -> Plan:
-    """Some targets of a batch as a plan of their own."""
-    import time
-
-    started = time.perf_counter()
-    approaches = plan_part(problem, choice, first, count, began)
-    return Plan(problem, approaches, time.perf_counter() - started)
+    return part, solved.figures
 
 
 def part_targets(problem: Problem) -> int:
@@ -101,12 +87,9 @@ def part_targets(problem: Problem) -> int:
     return PART_TARGETS[problem.options.method] if quick else PART_TARGETS_SLOW
 
 
-def plan_head(job_id: str, planned: int, infeasible: int, effort: float, elapsed_s: float) -> str:
+def plan_head(job_id: str, totals: parts.Totals) -> str:
     """The answer of a job's plan without its approaches, JSON."""
-    head = plan_to_wire(Plan(_job(job_id).problem, (), elapsed_s), job_id)
-    del head["approaches"]
-    head["summary"] |= {"planned": planned, "infeasible": infeasible, "total_effort": effort}
-    return orjson.dumps(head).decode()
+    return parts.head_of(_job(job_id).problem, job_id, totals).decode()
 
 
 def resolved_request(request: str, problem: Problem) -> str:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from app.services.job_parts import choose_for_job, load_job, plan_head, solve_part
 from app.services.measures import PlanFigures
+from app.services.parts import Totals
 from app.services.solving import LogOptions, Pool, SolverLost
 from app.store import JobRow, JobWork, NewPart
 
@@ -64,9 +65,8 @@ class JobProcess:
         Raises:
             SolverLost: the process died, or was ended.
         """
-        return await self._run(
-            plan_head, job.id, job.planned, job.infeasible, job.total_effort, job.elapsed_s
-        )
+        totals = Totals(job.planned, job.infeasible, job.total_effort, job.elapsed_s)
+        return await self._run(plan_head, job.id, totals)
 
     async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
         if self._pool is None:

@@ -2,14 +2,13 @@
 
 import json
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, Final
+from typing import Any
 
 import orjson
 
+from app.services.parts import joined
 from app.store import PlanStore, StoredPlan
 from solver.solution import PLANNED
-
-APPROACHES: Final = b',"approaches":['
 
 
 def plan_chunks(store: PlanStore, plan_id: str, plan: StoredPlan) -> Iterator[bytes]:
@@ -17,14 +16,7 @@ def plan_chunks(store: PlanStore, plan_id: str, plan: StoredPlan) -> Iterator[by
     if not plan.in_parts:
         yield plan.answer.encode()
         return
-    yield plan.answer.encode()[:-1] + APPROACHES
-    between = b""
-    for chunk in _arrays(store, plan_id, plan):
-        inside = chunk[1:-1]
-        if inside:
-            yield between + inside
-            between = b","
-    yield b"]}"
+    yield from joined(plan.answer.encode(), _arrays(store, plan_id, plan))
 
 
 def whole_answer(store: PlanStore, plan_id: str, plan: StoredPlan) -> bytes:

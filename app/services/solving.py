@@ -6,11 +6,10 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from typing import TypeVar
 
@@ -21,13 +20,27 @@ from app.logs import configure_logs
 from app.services.comparing import ComparisonOrder, compare_to_bytes
 from app.services.measures import Measures, NoMeasures, PlanFigures
 from app.services.motions import target_motions
+from app.services.parts import (
+    SolvedPart,
+    Totals,
+    added,
+    head_of,
+    joined,
+    plan_figures,
+    solve_part,
+)
 from app.services.wire import plan_to_wire
 from hardware.messages import Failure
-from solver import Plan, Problem, solve
+from solver import Problem, solve
+from solver.many_targets import plans_together
+from solver.staged import choose
 
 logger = logging.getLogger(__name__)
 
 Result = TypeVar("Result")
+
+SHARED_TARGETS = 200
+"""Independent batches from this size on are shared by all workers; below, sharing costs more."""
 
 # A plan takes from milliseconds to seconds, so a queue of them is shorter after this.
 OVERLOAD_RETRY_S = 2
@@ -40,13 +53,13 @@ class SolverLost(Exception):
 def solve_to_json(problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
     """The answer's body, and its figures; runs in a worker."""
     plan = solve(problem)
-    return orjson.dumps(plan_to_wire(plan, plan_id)), plan_figures(problem, plan)
+    return orjson.dumps(plan_to_wire(plan, plan_id)), plan_figures(plan)
 
 
-def plan_figures(problem: Problem, plan: Plan) -> PlanFigures:
-    """What is counted of a plan."""
-    reasons = [entry.reason.code for entry in plan.approaches if entry.reason is not None]
-    return PlanFigures(problem.options.method, plan.planned, Counter(reasons), plan.elapsed_s)
+def solve_share(problem: Problem) -> SolvedPart:
+    """A share of a batch of independent targets; runs in a worker."""
+    _, part = solve_part(problem, choose(problem), 0, len(problem.targets), problem.start)
+    return part
 
 
 @dataclass(frozen=True)
@@ -158,9 +171,7 @@ class SolvingService:
             )
         self._solving += 1
         try:
-            answer, figures = await self._run(
-                lambda pool: pool.submit(solve_to_json, problem, plan_id)
-            )
+            answer, figures = await self._solve(problem, plan_id)
         except SolverLost:
             raise ProblemError(
                 503, "solver_unavailable", "The solver was lost; it has been started again."
@@ -172,6 +183,32 @@ class SolvingService:
             self._solving -= 1
         self._measures.solved(figures)
         return answer
+
+    async def _solve(self, problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
+        if (
+            self._workers == 1
+            or len(problem.targets) < SHARED_TARGETS
+            or not plans_together(problem)
+        ):
+            return await self._run(lambda pool: pool.submit(solve_to_json, problem, plan_id))
+        size = -(-len(problem.targets) // self._workers)
+        shares = [
+            replace(problem, targets=problem.targets[first : first + size])
+            for first in range(0, len(problem.targets), size)
+        ]
+        solved = await asyncio.gather(*(self._share(share) for share in shares))
+        figures = added(part.figures for part in solved)
+        totals = Totals(
+            figures.planned,
+            figures.targets - figures.planned,
+            sum(part.effort for part in solved),
+            figures.elapsed_s,
+        )
+        head = head_of(problem, plan_id, totals)
+        return b"".join(joined(head, (part.approaches for part in solved))), figures
+
+    async def _share(self, share: Problem) -> SolvedPart:
+        return await self._run(lambda pool: pool.submit(solve_share, share))
 
     async def motions(
         self, request: str, answer: str, execution_id: str
