@@ -1,0 +1,1 @@
+"""Benchmarks and trials of the live service, against processes of their own."""
