@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 BENCH_VENV := .venv-bench
 BENCH_BIN := $(BENCH_VENV)/bin
 
-.PHONY: demo test check serve setup lock pictures openapi reports bench bench-quick bench-page clean
+.PHONY: demo test check serve setup lock pictures openapi reports bench bench-quick bench-page bench-service clean
 
 demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
@@ -44,6 +44,11 @@ bench: $(BENCH_VENV)/bench.stamp ## every benchmark into bench/results, or some:
 
 bench-quick: $(BENCH_VENV)/bench.stamp ## the same with small sets, into build/bench
 	$(BENCH_BIN)/python -m bench --quick $(addprefix --only ,$(ONLY))
+
+bench-service: $(VENV)/dev.stamp ## a live service under load, fuzzing and kills
+	$(BIN)/python -m bench.service.load
+	$(BIN)/python -m bench.service.fuzz
+	$(BIN)/python -m bench.service.kills
 
 bench-page: $(BENCH_VENV)/bench.stamp ## docs/benchmarks.md and its plots, from bench/results
 	$(BENCH_BIN)/python -m bench.page

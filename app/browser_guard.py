@@ -5,6 +5,7 @@ that has its own name resolved to loopback (DNS rebinding) still has that name i
 """
 
 import ipaddress
+from collections.abc import Sequence
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
@@ -23,11 +24,18 @@ class BrowserGuardMiddleware:
     Args:
         app: what is guarded.
         host: the address that the service listens on.
+        any_name: on loopback too, as behind a reverse proxy that passes its own name on. A name
+            resolved to loopback is no danger where requests need a token.
+        origins: pages of these origins pass.
     """
 
-    def __init__(self, app: ASGIApp, *, host: str) -> None:
+    def __init__(
+        self, app: ASGIApp, *, host: str, any_name: bool = False, origins: Sequence[str] = ()
+    ) -> None:
         self._app = app
-        self._names = (*LOOPBACK_NAMES, host.lower()) if is_loopback(host) else ()
+        bound = is_loopback(host) and not any_name
+        self._names = (*LOOPBACK_NAMES, host.lower()) if bound else ()
+        self._origins = frozenset(origins)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass it on, or refuse it."""
@@ -38,7 +46,10 @@ class BrowserGuardMiddleware:
         host = headers.get("host", "")
         if self._names and _address(f"//{host}")[0] not in self._names:
             code, detail = "unknown_host", "The service listens on loopback under no such name."
-        elif not all(_is_same(origin, host) for origin in headers.getlist("origin")):
+        elif not all(
+            origin in self._origins or _is_same(origin, host)
+            for origin in headers.getlist("origin")
+        ):
             code, detail = "cross_origin", "The request comes from a page of another origin."
         else:
             await self._app(scope, receive, send)

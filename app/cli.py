@@ -1,5 +1,6 @@
 """The command `prunus`. Heavy modules are imported by the commands that need them."""
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,6 +10,9 @@ import typer
 from app.compare_command import compare
 from app.refusals import fail
 from app.robot_commands import robot_commands
+from app.settings_command import SettingsFile
+from app.settings_command import settings as settings_command
+from app.token_command import token_commands
 
 cli = typer.Typer(
     name="prunus",
@@ -18,7 +22,9 @@ cli = typer.Typer(
     pretty_exceptions_enable=False,
 )
 cli.add_typer(robot_commands, name="robot")
+cli.add_typer(token_commands, name="token")
 cli.command()(compare)
+cli.command(name="settings")(settings_command)
 
 
 def main() -> None:
@@ -52,20 +58,19 @@ def serve(
     data_dir: Annotated[
         Path | None, typer.Option(help="Folder of the database [prunus-data].")
     ] = None,
+    settings: SettingsFile = None,
 ) -> None:
-    """Start the service; PRUNUS_... in the environment sets what is not given."""
-    from pydantic import ValidationError
+    """Start the service.
 
+    What is not given is taken from PRUNUS_... in the environment, and then from the settings file.
+    """
     from app.serving import CannotServe, run_service
-    from app.settings import Settings
+    from app.settings_command import settings_or_fail
 
     given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir}
+    resolved = settings_or_fail(settings, given)
     try:
-        settings = Settings(**{name: value for name, value in given.items() if value is not None})
-        run_service(settings)
-    except ValidationError as error:
-        names = ", ".join(f"PRUNUS_{entry['loc'][0]}".upper() for entry in error.errors())
-        fail(f"settings that make no sense: {names}", code=1)
+        run_service(resolved)
     except CannotServe as error:
         fail(str(error), code=1)
 
@@ -153,6 +158,10 @@ def worker(
     url: Annotated[str, typer.Option(help="The service's address.")],
     robot: Annotated[str, typer.Option(help="Which robot this is.")],
     port: Annotated[str, typer.Option(help="Serial device of its servos.")],
+    token_file: Annotated[
+        Path | None,
+        typer.Option(help="File with the service's token; default: PRUNUS_TOKEN, or none."),
+    ] = None,
     tool: Annotated[
         str | None, typer.Option(help="The mounted tool; default: the robot's default.")
     ] = None,
@@ -175,23 +184,25 @@ def worker(
     """
     from app.version import prunus_version
     from hardware.exceptions import HardwareError
+    from hardware.options import read_token
     from hardware.worker_program import WorkerOptions, run_worker
     from solver.exceptions import SolverError
 
-    options = WorkerOptions(
-        url=url,
-        robot=robot,
-        port=port,
-        tool=tool,
-        end_effector=end_effector,
-        end_effector_record=end_effector_record,
-        calibration=calibration,
-        data_dir=data_dir,
-        baud_rate=baud_rate,
-        time_factor=time_factor,
-        version=prunus_version(),
-    )
     try:
+        options = WorkerOptions(
+            url=url,
+            robot=robot,
+            port=port,
+            tool=tool,
+            end_effector=end_effector,
+            end_effector_record=end_effector_record,
+            calibration=calibration,
+            data_dir=data_dir,
+            baud_rate=baud_rate,
+            time_factor=time_factor,
+            version=prunus_version(),
+            token=read_token(token_file, os.environ.get("PRUNUS_TOKEN", "")),
+        )
         run_worker(options, lambda news: typer.echo(news, err=True))
     except (HardwareError, SolverError) as error:
         fail(str(error), code=1)

@@ -7,6 +7,7 @@ import orjson
 from fastapi import FastAPI, Request, Response
 from pydantic import ValidationError
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 from app.schemas.problem_details import MEDIA_TYPE
 from solver import Fault, InvalidProblem
@@ -83,6 +84,23 @@ def problem_response(
     return Response(orjson.dumps(body), status, headers=headers, media_type=MEDIA_TYPE)
 
 
+def _allowed(request: Request) -> str:
+    # Starlette names the methods of the first route of a path only.
+    return ", ".join(
+        method
+        for method in sorted(http.HTTPMethod)
+        if any(
+            route.matches({**request.scope, "method": method.value})[0] is Match.FULL
+            for route in request.app.routes
+        )
+    )
+
+
+def internal_error() -> Response:
+    """The 500 that says no more than that the log has it."""
+    return problem_response(500, "internal_error", "Something broke; the log has it.")
+
+
 def install_error_handlers(app: FastAPI) -> None:
     """Make every error of the application a problem."""
 
@@ -105,12 +123,15 @@ def install_error_handlers(app: FastAPI) -> None:
         return problem_response(problem.status, problem.code, problem.detail, faults=problem.faults)
 
     @app.exception_handler(HTTPException)
-    async def protocol(_: Request, error: HTTPException) -> Response:
+    async def protocol(request: Request, error: HTTPException) -> Response:
         phrase = http.HTTPStatus(error.status_code).phrase
         code = phrase.lower().replace(" ", "_")
-        return problem_response(error.status_code, code, f"{phrase}.", headers=error.headers)
+        headers = error.headers
+        if error.status_code == http.HTTPStatus.METHOD_NOT_ALLOWED:
+            headers = {**(headers or {}), "Allow": _allowed(request)}
+        return problem_response(error.status_code, code, f"{phrase}.", headers=headers)
 
     @app.exception_handler(Exception)
     async def unexpected(_: Request, error: Exception) -> Response:
-        # Starlette raises the error again behind this answer, and the server logs it in full.
-        return problem_response(500, "internal_error", "Something broke; the log has it.")
+        # Starlette raises the error again behind this answer, and it is logged in full.
+        return internal_error()

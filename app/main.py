@@ -7,16 +7,28 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
+from sqlalchemy import event
 from starlette.concurrency import run_in_threadpool
+from starlette.middleware.cors import CORSMiddleware
 
+from app.access_document import describe_access
+from app.access_guard import AccessGuardMiddleware
 from app.body_limit import BodyLimitMiddleware
+from app.body_timeout import BodyTimeoutMiddleware
 from app.browser_guard import BrowserGuardMiddleware
+from app.cors import CORS_RULES
 from app.errors import install_error_handlers
+from app.metrics import Metrics
+from app.request_log import RequestLogMiddleware
 from app.routers import (
     comparisons,
+    documentation,
     executions,
+    frames,
     health,
+    leases,
     link,
+    metrics,
     plans,
     robot_state,
     robots,
@@ -25,22 +37,31 @@ from app.routers import (
 from app.routers.common import problem_answers
 from app.schemas.comparisons import ComparisonRequest
 from app.schemas.executions import ExecutionRequest
+from app.schemas.frames import FrameRegistrationRequest, FrameRequest
+from app.schemas.leases import LeaseRenewal, LeaseRequest
 from app.schemas.problem_details import ProblemDetails
 from app.schemas.requests import PlanRequest
 from app.schemas.thinning_selections import ThinningSelectionRequest
+from app.scopes import check_rows
+from app.services.access import AccessService
 from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
+from app.services.frames import FrameService
 from app.services.idempotency import IdempotencyService
+from app.services.leases import LeaseService
 from app.services.links import LinkService
-from app.services.solving import SolvingService
+from app.services.solving import LogOptions, SolvingService
 from app.settings import Settings
 from app.store import (
     ComparisonStore,
     ExecutionStore,
+    FrameStore,
     IdempotencyStore,
     PlanStore,
+    TokenStore,
     open_engine,
 )
+from app.traffic import StoppingMiddleware, Traffic
 from app.version import prunus_version
 
 
@@ -52,25 +73,57 @@ def create_app(settings: Settings) -> FastAPI:
         description="Decides how a robot arm reaches for blossoms in a tree. "
         "Metres, radians and seconds in the robot's base frame throughout.",
         lifespan=_lifespan,
-        # The stock pages load their scripts from elsewhere; this must work offline.
+        # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
         docs_url=None,
         redoc_url=None,
     )
     app.state.settings = settings
+    app.state.metrics = Metrics(prunus_version())
+    app.state.traffic = Traffic()
+    app.state.stopping = app.state.traffic.stopping
+    # What is added last is outermost.
+    app.add_middleware(StoppingMiddleware, traffic=app.state.traffic)
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
-    app.add_middleware(BrowserGuardMiddleware, host=settings.host)
+    app.add_middleware(
+        BodyTimeoutMiddleware,
+        idle_s=settings.body_idle_timeout_s,
+        total_s=settings.body_timeout_s,
+    )
+    app.add_middleware(
+        AccessGuardMiddleware,
+        token_required=settings.token_required,
+        rate_per_s=settings.rate_limit_per_s,
+        burst=settings.rate_burst,
+        most_requests=settings.most_requests,
+    )
+    if settings.cors_origins:
+        # In front of what checks tokens: a browser asks beforehand without one.
+        app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS_RULES)
+    app.add_middleware(
+        BrowserGuardMiddleware,
+        host=settings.host,
+        any_name=settings.token_required,
+        origins=settings.cors_origins,
+    )
+    app.add_middleware(RequestLogMiddleware, metrics=app.state.metrics, traffic=app.state.traffic)
     install_error_handlers(app)
     for module in (
         plans,
         executions,
         comparisons,
+        frames,
         thinning_selections,
         robots,
         robot_state,
+        leases,
         link,
         health,
+        metrics,
+        documentation,
     ):
         app.include_router(module.router)
+    check_rows(app.routes)
+    documentation.mount_files(app)
     # FastAPI's documented way to extend the document is to replace this method.
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
@@ -83,11 +136,21 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
     state.store = PlanStore(engine)
     state.execution_store = ExecutionStore(engine)
+    state.frames = FrameService(FrameStore(engine))
     state.idempotency = IdempotencyService(IdempotencyStore(engine))
     state.links = LinkService()
-    state.solving = SolvingService(settings.workers)
+    state.engine = engine
+    event.listen(engine, "handle_error", lambda _: state.metrics.store_failed())
+    state.access = AccessService(TokenStore(engine))
+    state.leases = LeaseService()
+    state.solving = SolvingService(
+        settings.workers,
+        settings.most_waiting_plans,
+        state.metrics,
+        LogOptions(settings.log_format, settings.log_level),
+    )
     state.executions = ExecutionService(
-        state.execution_store, state.store, state.solving, state.links
+        state.execution_store, state.store, state.solving, state.links, state.leases
     )
     state.comparisons = ComparisonService(ComparisonStore(engine), state.solving)
     try:
@@ -111,6 +174,10 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         (ExecutionRequest, "validation"),
         (ComparisonRequest, "validation"),
         (ThinningSelectionRequest, "validation"),
+        (FrameRequest, "validation"),
+        (FrameRegistrationRequest, "validation"),
+        (LeaseRequest, "validation"),
+        (LeaseRenewal, "validation"),
         (ProblemDetails, "serialization"),
     ):
         _, definitions = models_json_schema(
@@ -124,6 +191,7 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
             # FastAPI's own form of a validation error, which is never sent.
             _drop_stock_validation_error(operation["responses"])
             operation["responses"] |= {str(code): what for code, what in refused.items()}
+    describe_access(document)
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
     return document

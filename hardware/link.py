@@ -5,6 +5,7 @@ and the reports not yet sent, so nothing piles up while the service is away.
 """
 
 import contextlib
+import logging
 import threading
 import time
 from collections import deque
@@ -12,7 +13,7 @@ from collections.abc import Callable
 from typing import Final
 from urllib.parse import quote, urlsplit, urlunsplit
 
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.sync.client import ClientConnection, connect
 
 from hardware.exceptions import HardwareError
@@ -34,7 +35,12 @@ from hardware.messages import (
 from hardware.tolerances import LINK_POLL_S, RECONNECT_S
 
 # Close codes with which the service refuses for good; see docs/errors.md.
-FINAL_CODES: Final = (4404, 4412)
+FINAL_CODES: Final = (4401, 4404, 4412)
+# The same as answers to the handshake: trying again with the same token would not help.
+FINAL_STATUSES: Final = {
+    401: "the service wants a valid token",
+    403: "the service does not allow this token, or this address of it",
+}
 MOST_BYTES: Final = 64 * 1024 * 1024
 
 
@@ -70,10 +76,17 @@ class RobotLink:
         url: see `link_url`.
         hello: what is said first.
         on_news: called with a sentence whenever the link comes, goes, or is refused.
+        token: the service's; empty: none.
     """
 
-    def __init__(self, url: str, hello: Hello, on_news: Callable[[str], None]) -> None:
+    def __init__(
+        self, url: str, hello: Hello, on_news: Callable[[str], None], token: str = ""
+    ) -> None:
         self._url = url
+        self._headers = {"Authorization": f"Bearer {token}"} if token else {}
+        # The library writes every header to its log at debug level, so this one has none.
+        self._logger = logging.getLogger(f"{__name__}.websocket")
+        self._logger.setLevel(logging.INFO)
         self._hello = hello
         self._on_news = on_news
         self._lock = threading.Lock()
@@ -131,6 +144,8 @@ class RobotLink:
                     ping_interval=None,
                     max_size=MOST_BYTES,
                     proxy=None,
+                    additional_headers=self._headers,
+                    logger=self._logger,
                 ) as connection:
                     self._join(connection)
                     self._talk(connection)
@@ -140,6 +155,13 @@ class RobotLink:
                 if closed is not None and closed.code in FINAL_CODES:
                     self.refusal = LinkRefused(f"the service refuses: {closed.reason}")
                     return
+            except InvalidStatus as error:
+                status = error.response.status_code
+                if status in FINAL_STATUSES:
+                    self.refusal = LinkRefused(f"{FINAL_STATUSES[status]} (status {status})")
+                    self._tell(str(self.refusal))
+                    return
+                self._tell(f"no link to {self._url}: {error}")
             except (OSError, TimeoutError, InvalidHandshake, InvalidMessage) as error:
                 self._tell(f"no link to {self._url}: {error}")
             except InvalidURI as error:

@@ -5,7 +5,7 @@ import signal
 import sys
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from hardware.arm import ServoArm
@@ -46,6 +46,7 @@ class WorkerOptions:
         baud_rate: of the bus [1/s].
         time_factor: how many times faster than the wall clock; simulated servos only.
         version: this program's, for the service.
+        token: the service's; empty: none. It is never shown.
     """
 
     url: str
@@ -59,6 +60,7 @@ class WorkerOptions:
     baud_rate: int
     time_factor: float
     version: str
+    token: str = field(default="", repr=False)
 
 
 def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
@@ -97,7 +99,7 @@ def run_worker(options: WorkerOptions, say: Callable[[str], None]) -> None:
             calibration_rad=arm_map.calibration_rad,
             version=options.version,
         )
-        link = RobotLink(link_url(options.url, instance.name), hello, say)
+        link = RobotLink(link_url(options.url, instance.name), hello, say, options.token)
         worker = Worker(arm, tool, end_effector, link, journal, clock)
         # A terminal that is closed ends a worker as properly as ctrl-C does.
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

@@ -9,7 +9,7 @@ from solver.approach.between_rows import may_leave_between
 from solver.approach.feasibility import retreat_from
 from solver.approach.task import ApproachTask
 from solver.kinematics.families import rail_of
-from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.forward import forward_kinematics, tool_centres
 from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.methods.candidate import Candidate
@@ -61,10 +61,9 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
     pose = forward_kinematics(task.robot, task.tool, rows[-1])
     if not options.timed:
         line = (pose[:3, 3], pose[:3, 2])
-        refined, deviation = refined_rows(
-            task.robot, task.tool, options, rows[-1], candidate.branch, line
+        return CutIn(
+            rows, None, *refined_rows(task.robot, task.tool, options, rows, candidate.branch, line)
         )
-        return CutIn(rows, None, refined, deviation)
     step_s = TRAJECTORY_STEP_S
     for _ in range(TRAJECTORY_HALVINGS + 1):
         motion = time_cut_in(task.robot, options.standoff_m, rows, path, step_s)
@@ -113,7 +112,7 @@ def refined_rows(
     robot: Robot,
     tool: Tool,
     options: Options,
-    thinning: Array,
+    path: Array,
     branch: int | None,
     line: tuple[Array, Array],
 ) -> tuple[Array, float]:
@@ -122,16 +121,17 @@ def refined_rows(
     Args:
         robot: the arm.
         tool: its tool.
-        options: standoff, rows to begin with, and how straight is straight.
-        thinning: the posture at the target, shape (joints,).
+        options: standoff, and how straight is straight.
+        path: the rows to begin with, evenly spaced, thinning last, shape (path_points, joints).
         branch: its branch; None without a closed form.
         line: a point of the line, shape (3,) [m], and its unit direction, shape (3,).
     """
-    count = max(options.path_points, LEAST_REFINED_ROWS)
-    rows, deviation = np.empty((0, len(robot.joints))), np.inf
+    rows, deviation = path, np.inf
+    count = max(len(path), LEAST_REFINED_ROWS)
     for _ in range(TRAJECTORY_HALVINGS + 1):
-        retreats = np.linspace(options.standoff_m, 0.0, count)
-        rows = retreat_rows(robot, tool, thinning, branch, retreats)
+        if count > len(path):
+            retreats = np.linspace(options.standoff_m, 0.0, count)
+            rows = retreat_rows(robot, tool, path[-1], branch, retreats)
         deviation = line_deviation(robot, tool, rows, *line)
         if deviation <= options.straightness_m:
             break
@@ -149,12 +149,29 @@ def line_deviation(robot: Robot, tool: Tool, rows: Array, point: Array, directio
         point: a point of the line, shape (3,) [m].
         direction: the line's unit direction, shape (3,).
     """
-    shares = np.linspace(0.0, 1.0, DEVIATION_SAMPLES + 2)[:-1, None, None]
-    between = (rows[:-1] + shares * np.diff(rows, axis=0)).reshape(-1, rows.shape[1])
-    postures = np.concatenate((between, rows[-1:]))
-    offsets = forward_kinematics(robot, tool, postures)[:, :3, 3] - point
-    across = offsets - np.outer(offsets @ direction, direction)
-    return float(np.max(np.linalg.norm(across, axis=1)))
+    return float(line_deviations(robot, tool, rows[None], point[None], direction[None])[0])
+
+
+def line_deviations(
+    robot: Robot, tool: Tool, paths: Array, points: Array, directions: Array
+) -> Array:
+    """`line_deviation` of n motions, shape (n,) [m].
+
+    Args:
+        robot: the arm.
+        tool: its tool.
+        paths: postures, shape (n, rows, joints).
+        points: a point of each line, shape (n, 3) [m].
+        directions: unit directions, shape (n, 3).
+    """
+    n, _, joints = paths.shape
+    shares = np.linspace(0.0, 1.0, DEVIATION_SAMPLES + 2)[:-1, None, None, None]
+    between = (paths[:, :-1] + shares * np.diff(paths, axis=1)).swapaxes(0, 1)
+    postures = np.concatenate((between.reshape(n, -1, joints), paths[:, -1:]), axis=1)
+    offsets = tool_centres(robot, tool, postures) - points.T[:, :, None]
+    along = np.einsum("ink,ni->nk", offsets, directions)
+    across = offsets - along * directions.T[:, :, None]
+    return np.asarray(np.sqrt(np.max(np.sum(across * across, axis=0), axis=1)))
 
 
 def broken_limit(task: ApproachTask, candidate: Candidate) -> float | None:

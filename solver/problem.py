@@ -5,16 +5,19 @@ Lengths in metres, angles in radians, everything in the robot's base frame.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from solver.exceptions import Fault, InvalidProblem, UnsupportedKinematics
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.robots.model import Robot, Tool
 from solver.tolerances import LARGEST_STD_REACHES, SHORTEST_DIRECTION, UNIT_MISTAKE_REACHES
 from solver.weights import torque_weights
+
+if TYPE_CHECKING:  # it imports this module
+    from solver.frames import NamedFrame
 
 ORDERS: Final = ("independent", "given", "optimal")
 NORMS: Final = ("l1", "l2")
@@ -76,7 +79,9 @@ class Options:
 class Problem:
     """A batch of targets for one robot with one tool, from one start posture.
 
-    `tool` and `start_joints` default to the robot's own. Construction checks everything:
+    `tool` and `start_joints` default to the robot's own. Targets are in the base frame; `frame`
+    only tells in which other one they were sent, if in one (`solver.frames.targets_in_base`).
+    Construction checks everything:
 
     Raises:
         InvalidProblem: with every fault found, each with the path of its field.
@@ -87,6 +92,7 @@ class Problem:
     tool: Tool | str | None = None
     start_joints: Sequence[float] | None = None
     options: Options = field(default_factory=Options)
+    frame: "NamedFrame | None" = None
 
     def __post_init__(self) -> None:
         faults: list[Fault] = []
@@ -117,6 +123,11 @@ class Problem:
             known = ", ".join(tool.name for tool in self.robot.tools)
             faults.append(Fault(("tool",), f"unknown tool; known: {known}"))
         return tool or default
+
+    @cached_property
+    def targets_by_id(self) -> Mapping[str, Target]:
+        """The targets by their ids, in their order."""
+        return {target.id: target for target in self.targets}
 
     @property
     def mounted_tool(self) -> Tool:

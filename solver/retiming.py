@@ -46,7 +46,7 @@ def retime(problem: Problem, chosen: Sequence[ChosenApproach]) -> tuple[Approach
     """
     # Whatever the plan's answer left out, what moves is timed.
     problem = replace(problem, options=replace(problem.options, include=MOTION))
-    targets = {target.id: target for target in problem.targets}
+    targets = problem.targets_by_id
     reference: Sequence[float] = problem.start
     approaches: list[Approach] = []
     for choice in chosen:

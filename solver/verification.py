@@ -16,15 +16,25 @@ from solver.approach.relaxation import Placement, placement, rotation, shortened
 from solver.approach.robustness import needed_margin, path_displacement_margin
 from solver.cut_in import refined_rows
 from solver.effort import posture_effort
-from solver.kinematics.families import has_branches, rail_of
+from solver.kinematics.families import has_branches
 from solver.kinematics.forward import forward_kinematics
-from solver.kinematics.spherical_wrist import BRANCHES, inverse_kinematics
+from solver.kinematics.spherical_wrist import BRANCHES
 from solver.motion_verification import (
     Motion,
     cut_in_margin,
     motion_residuals,
     segment_rows,
     shape_residuals,
+)
+from solver.path_verification import (
+    ClaimedPaths,
+    Residuals,
+    branch_residuals,
+    deviation_residuals,
+    displacement_residuals,
+    effort_residuals,
+    margin_residuals,
+    path_residuals,
 )
 from solver.problem import Problem, Target
 from solver.residual import Residual, Verification
@@ -33,12 +43,7 @@ from solver.solution import INFEASIBLE, PLANNED, Approach, Plan, Reason, Traject
 from solver.tolerances import (
     AXIS_ERROR_RAD,
     EFFORT_ERROR_RELATIVE,
-    JOINT_RATE_RAD_M,
-    LIMIT_EXCESS_RAD,
     POSITION_ERROR_M,
-    RATE_EXCESS_RELATIVE,
-    SAME_BRANCH_RAD,
-    SAME_POSTURE_RAD,
 )
 
 MAY_BE_ABSENT = ("branch", "lower_bound", "displacement_margin_m")
@@ -54,7 +59,7 @@ def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         reference: posture from which effort and transfer count: the start, or unless independent
             the previous planned standby, shape (6,) [rad].
     """
-    target = next((t for t in problem.targets if t.id == approach.target_id), None)
+    target = problem.targets_by_id.get(approach.target_id)
     claim = _claim(problem, approach)
     if target is None or claim is None:
         return Verification((Residual("missing_fields", 1.0, 0.0),))
@@ -194,29 +199,22 @@ def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
 
 
 def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
-    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
-    rows = np.asarray(claim.path_joints)
+    claimed = _claimed_path(problem, target, claim)
+    standby, thinning = np.asarray(claim.standby_joints), np.asarray(claim.thinning_joints)
+    yield from _single(path_residuals(problem, claimed, standby[None], thinning[None]))
+    yield from _branch_residuals(problem, claim, claimed)
+
+
+def _claimed_path(problem: Problem, target: Target, claim: _Claim) -> ClaimedPaths:
     place, axes = _wanted_pose(problem, target, claim)
-    poses = forward_kinematics(robot, tool, rows)
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
-    places = place - np.outer(retreats, axes[:, 2])
-    position_errors = np.linalg.norm(poses[:, :3, 3] - places, axis=1)
-    yield Residual("path_position_m", float(position_errors.max()), POSITION_ERROR_M)
-    axis_errors = np.linalg.norm(poses[:, :3, :3] - axes, axis=1)
-    yield Residual("path_axes_rad", float(axis_errors.max()), AXIS_ERROR_RAD)
-    for name, row, end in (
-        ("standby", claim.standby_joints, rows[0]),
-        ("thinning", claim.thinning_joints, rows[-1]),
-    ):
-        difference = float(np.max(np.abs(np.asarray(row) - end)))
-        yield Residual(f"{name}_is_path_end_rad", difference, SAME_POSTURE_RAD)
-    spacing = options.standoff_m / (options.path_points - 1)
-    rate = float(np.abs(np.diff(rows, axis=0)).max()) / spacing
-    yield Residual("wrist_jump_rad_m", rate, JOINT_RATE_RAD_M * (1 + RATE_EXCESS_RELATIVE))
-    yield from _branch_residuals(problem, claim, poses)
+    return ClaimedPaths(np.asarray(claim.path_joints)[None], place[None], axes[None])
 
 
-def _branch_residuals(problem: Problem, claim: _Claim, poses: Array) -> Iterator[Residual]:
+def _single(residuals: Iterator[Residuals]) -> Iterator[Residual]:
+    return (residual.of(0) for residual in residuals)
+
+
+def _branch_residuals(problem: Problem, claim: _Claim, claimed: ClaimedPaths) -> Iterator[Residual]:
     """The branch claimed, at both ends; of an arm without branches, that its rows hang together."""
     robot, tool, rows = problem.robot, problem.mounted_tool, np.asarray(claim.path_joints)
     known = claim.branch is not None and 0 <= claim.branch < BRANCHES
@@ -226,40 +224,30 @@ def _branch_residuals(problem: Problem, claim: _Claim, poses: Array) -> Iterator
     if claim.branch is None:
         yield Residual("branch_continuity", float(not same_side(robot, tool, rows)), 0.0)
         return
-    rail = rail_of(robot, tool)
-    for name, end in (("standby", 0), ("thinning", -1)):
-        row = rows[end] if rail is None else rows[end, 1:]
-        arm = robot if rail is None else rail.arm_at(float(rows[end, 0]))
-        found = inverse_kinematics(arm, tool, poses[end][None]).joints[0, claim.branch]
-        turned = np.abs(np.remainder(found - row + np.pi, 2 * np.pi) - np.pi).max()
-        yield Residual(f"{name}_branch_rad", float(turned), SAME_BRANCH_RAD)
+    yield from _single(branch_residuals(problem, claimed, np.array([claim.branch])))
 
 
 def _number_residuals(
     problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
 ) -> Iterator[Residual]:
-    effort = posture_effort(
-        claim.thinning_joints, reference, problem.joint_weights, problem.options.norm
-    )
-    error = abs(effort - claim.effort) / max(1.0, effort)
-    yield Residual("effort_relative", error, EFFORT_ERROR_RELATIVE)
+    thinning, references = np.asarray(claim.thinning_joints)[None], np.asarray(reference)[None]
+    efforts = np.array([claim.effort])
+    yield from _single(effort_residuals(problem, thinning, references, efforts))
     if claim.lower_bound is not None:
+        effort = posture_effort(
+            claim.thinning_joints, reference, problem.joint_weights, problem.options.norm
+        )
         above = (claim.lower_bound - effort) / max(1.0, effort)
         yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
+    claimed = _claimed_path(problem, target, claim)
     if claim.trajectory is None:
-        finer, deviation = _refined(problem, target, claim)
-        yield Residual("path_deviation_m", deviation, problem.options.straightness_m)
-        claimed = deviation - claim.path_deviation_m
-        yield Residual("path_deviation_claim_m", claimed, POSITION_ERROR_M)
+        finer, deviation = _refined(problem, claimed, claim.branch)
+        claims = np.array([claim.path_deviation_m])
+        yield from _single(deviation_residuals(problem, np.array([deviation]), claims))
     else:
         finer = segment_rows(claim.trajectory, "cut_in", "dwell", "retreat")[1]
-    margin = cut_in_margin(problem, claim.path_joints, finer)
-    yield Residual("margin_claim_rad", abs(margin - claim.margin_rad), SAME_POSTURE_RAD)
-    rows = np.asarray(claim.path_joints)
-    outside = np.maximum(problem.robot.lower - rows, rows - problem.robot.upper)
-    yield Residual("path_limit_excess_rad", float(outside.max()), LIMIT_EXCESS_RAD)
-    excess = problem.options.limit_margin_rad - margin
-    yield Residual("limit_excess_rad", excess, LIMIT_EXCESS_RAD)
+    margins = np.array([cut_in_margin(problem, claim.path_joints, finer)])
+    yield from _single(margin_residuals(problem, claimed, margins, np.array([claim.margin_rad])))
 
 
 def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
@@ -270,20 +258,19 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
     margin = path_displacement_margin(
         problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints
     )
-    claimed = abs(margin - claim.displacement_margin_m)
-    yield Residual("displacement_margin_claim_m", claimed, POSITION_ERROR_M)
-    yield Residual("uncertainty_excess_m", needed_margin(target) - margin, POSITION_ERROR_M)
+    found, claims = np.array([margin]), np.array([claim.displacement_margin_m])
+    needed = np.array([needed_margin(target)])
+    yield from _single(displacement_residuals(found, claims, needed))
 
 
-def _refined(problem: Problem, target: Target, claim: _Claim) -> tuple[Array, float]:
-    place, axes = _wanted_pose(problem, target, claim)
+def _refined(problem: Problem, claimed: ClaimedPaths, branch: int | None) -> tuple[Array, float]:
     return refined_rows(
         problem.robot,
         problem.mounted_tool,
         problem.options,
-        claim.path_joints[-1],
-        claim.branch,
-        (place, axes[:, 2]),
+        claimed.paths[0],
+        branch,
+        (claimed.places[0], claimed.axes[0, :, 2]),
     )
 
 

@@ -6,6 +6,7 @@ from fastapi import Request
 
 from app.errors import ProblemError
 from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
+from app.services.leases import LEASE_HEADER
 
 # Python's own phrases for these change from version to version.
 DESCRIPTIONS = {
@@ -48,3 +49,8 @@ async def json_body(request: Request) -> bytes:
     if media_type not in ("", "application/json"):
         raise ProblemError(415, "unsupported_media_type", "The body must be application/json.")
     return await request.body()
+
+
+def lease_of(request: Request) -> str:
+    """The lease that the request comes with; empty without one."""
+    return request.headers.get(LEASE_HEADER, "")

@@ -24,7 +24,7 @@ router = APIRouter(prefix="/v1", tags=["comparisons"])
 
 @router.get(
     "/scenarios",
-    operation_id="listScenarios",
+    operation_id="list_scenarios",
     summary="All scenarios that methods can be compared on",
     responses={200: {"model": ScenariosAnswer}, **problem_answers(500)},
 )
@@ -38,7 +38,7 @@ def list_scenarios() -> Response:
 
 @router.post(
     "/comparisons",
-    operation_id="createComparison",
+    operation_id="create_comparison",
     status_code=202,
     summary="Compare methods on a scenario",
     responses={
@@ -74,7 +74,7 @@ async def create_comparison(request: Request) -> Response:
 
 @router.get(
     "/comparisons/{comparison_id}",
-    operation_id="getComparison",
+    operation_id="get_comparison",
     summary="How a comparison stands, and its result",
     responses={
         200: {

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.common import body_of, json_body, lease_of, problem_answers
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.executions import (
     ExecutionAnswer,
@@ -20,7 +20,7 @@ router = APIRouter(prefix="/v1/executions", tags=["executions"])
 
 @router.post(
     "",
-    operation_id="createExecution",
+    operation_id="create_execution",
     status_code=202,
     summary="Execute a plan",
     responses={
@@ -42,7 +42,9 @@ async def create_execution(request: Request) -> Response:
 
     async def create(key: NewKey | None) -> Response:
         given = ExecutionRequest.model_validate_json(body)
-        execution = await _service(request).create(given.plan_id, given.robot, key)
+        execution = await _service(request).create(
+            given.plan_id, given.robot, key, lease_id=lease_of(request)
+        )
         answer = _accepted(execution)
         answer.headers["Location"] = execution.location
         return answer
@@ -52,7 +54,7 @@ async def create_execution(request: Request) -> Response:
 
 @router.get(
     "",
-    operation_id="listExecutions",
+    operation_id="list_executions",
     summary="The newest 50, newest first",
     responses={200: {"model": ExecutionsAnswer}, **problem_answers(500)},
 )
@@ -68,7 +70,7 @@ async def list_executions(
 
 @router.get(
     "/{execution_id}",
-    operation_id="getExecution",
+    operation_id="get_execution",
     summary="How an execution stands",
     responses={200: {"model": ExecutionAnswer}, **problem_answers(404, 500)},
 )
@@ -80,38 +82,38 @@ async def get_execution(execution_id: str, request: Request) -> Response:
 
 @router.post(
     "/{execution_id}/pause",
-    operation_id="pauseExecution",
+    operation_id="pause_execution",
     status_code=202,
     summary="Slow down to a stand on the path",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
 )
 async def pause_execution(execution_id: str, request: Request) -> Response:
     """Only one that is executing; it is paused when its status says so."""
-    return _accepted(await _service(request).pause(execution_id))
+    return _accepted(await _service(request).pause(execution_id, lease_id=lease_of(request)))
 
 
 @router.post(
     "/{execution_id}/resume",
-    operation_id="resumeExecution",
+    operation_id="resume_execution",
     status_code=202,
     summary="Go on along the path",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
 )
 async def resume_execution(execution_id: str, request: Request) -> Response:
     """Only one that is paused."""
-    return _accepted(await _service(request).resume(execution_id))
+    return _accepted(await _service(request).resume(execution_id, lease_id=lease_of(request)))
 
 
 @router.post(
     "/{execution_id}/cancel",
-    operation_id="cancelExecution",
+    operation_id="cancel_execution",
     status_code=202,
     summary="Slow down to a stand on the path and end there",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
 )
 async def cancel_execution(execution_id: str, request: Request) -> Response:
     """One that the arm cannot have begun is canceled at once, another when its status says so."""
-    return _accepted(await _service(request).cancel(execution_id))
+    return _accepted(await _service(request).cancel(execution_id, lease_id=lease_of(request)))
 
 
 def _service(request: Request) -> ExecutionService:

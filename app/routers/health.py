@@ -9,11 +9,12 @@ from app.routers.common import problem_answers
 from app.schemas.answers import HealthAnswer
 from app.services.solving import SolvingService
 from app.store import PlanStore
+from app.traffic import RETRY_S, Traffic
 
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz", operation_id="getHealth", summary="The process answers")
+@router.get("/healthz", operation_id="get_health", summary="The process answers")
 async def get_health() -> HealthAnswer:
     """Needs nothing but the event loop."""
     return HealthAnswer(status="ok")
@@ -21,12 +22,15 @@ async def get_health() -> HealthAnswer:
 
 @router.get(
     "/readyz",
-    operation_id="getReadiness",
+    operation_id="get_readiness",
     summary="The solver is warm and the store answers",
     responses=problem_answers(503),
 )
 async def get_readiness(request: Request) -> HealthAnswer:
-    """503 until then."""
+    """503 until then, and again as soon as the service is stopping."""
+    traffic: Traffic = request.app.state.traffic
+    if traffic.is_stopping:
+        raise ProblemError(503, "stopping", "The service is stopping.", retry_after_s=RETRY_S)
     solving: SolvingService = request.app.state.solving
     store: PlanStore = request.app.state.store
     if not await solving.is_ready():

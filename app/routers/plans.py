@@ -13,6 +13,8 @@ from app.routers.common import body_of, json_body, problem_answers
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.answers import PlanAnswer
 from app.schemas.requests import PlanRequest
+from app.services.frames import FrameService
+from app.services.sent_frames import FindFrame, stored_request
 from app.services.solving import SolvingService
 from app.services.wire import parse_request, problem_from_wire
 from app.store import NewKey, PlanStore, new_entry
@@ -25,7 +27,7 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
 
 @router.post(
     "",
-    operation_id="createPlan",
+    operation_id="create_plan",
     status_code=201,
     summary="Plan an approach for every target",
     responses={
@@ -46,7 +48,8 @@ async def create_plan(request: Request) -> Response:
 
 async def _create(request: Request, body: bytes, key: NewKey | None) -> Response:
     limit: int = request.app.state.settings.sync_targets_limit
-    problem, normalised = await run_in_threadpool(_read, body, limit)
+    frames: FrameService = request.app.state.frames
+    problem, normalised = await run_in_threadpool(_read, body, limit, frames.transform)
     plan_id = uuid.uuid4().hex
     location = f"/v1/plans/{plan_id}"
     solving: SolvingService = request.app.state.solving
@@ -68,17 +71,18 @@ async def _create(request: Request, body: bytes, key: NewKey | None) -> Response
     )
 
 
-def _read(body: bytes, targets_limit: int) -> tuple[Problem, str]:
+def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Problem, str]:
     request = parse_request(body)
     if len(request.targets) > targets_limit:
         detail = f"more than {targets_limit} targets: asynchronous jobs are not available yet"
         raise invalid_request([Fault(("targets",), detail)])
-    return problem_from_wire(request), request.model_dump_json()
+    problem = problem_from_wire(request, find_frame)
+    return problem, stored_request(request, problem)
 
 
 @router.get(
     "/{plan_id}",
-    operation_id="getPlan",
+    operation_id="get_plan",
     summary="The plan again",
     responses={
         200: {

@@ -7,10 +7,11 @@ from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import problem_answers
+from app.routers.common import lease_of, problem_answers
 from app.schemas.executions import AcknowledgeAnswer, RobotStateAnswer, StopAnswer
 from app.services.execution_checks import no_worker, robot_instance
 from app.services.executions import ExecutionService
+from app.services.leases import LeaseService
 from app.services.links import ANSWER_S, Link, LinkService
 from app.services.wire import present
 from hardware.messages import Acknowledge, AcknowledgeReport, Stop, StopReport
@@ -25,7 +26,7 @@ NO_ANSWER = (
 
 @router.get(
     "/state",
-    operation_id="getRobotState",
+    operation_id="get_robot_state",
     summary="The robot as it is now",
     responses={200: {"model": RobotStateAnswer}, **problem_answers(404, 500)},
 )
@@ -47,7 +48,7 @@ async def get_robot_state(name: str, request: Request) -> Response:
 
 @router.post(
     "/stop",
-    operation_id="stopRobot",
+    operation_id="stop_robot",
     summary="Stop at once, whatever the robot does",
     responses={200: {"model": StopAnswer}, **problem_answers(404, 500, 503)},
 )
@@ -76,12 +77,14 @@ async def stop_robot(name: str, request: Request) -> Response:
 
 @router.post(
     "/acknowledge",
-    operation_id="acknowledgeFaults",
+    operation_id="acknowledge_faults",
     summary="A person has seen the faults",
-    responses={200: {"model": AcknowledgeAnswer}, **problem_answers(404, 500, 503)},
+    responses={200: {"model": AcknowledgeAnswer}, **problem_answers(404, 409, 500, 503)},
 )
 async def acknowledge_faults(name: str, request: Request) -> Response:
     """The worker checks again and clears what is gone; the answer has what is left."""
+    leases: LeaseService = request.app.state.leases
+    leases.check(name, lease_of(request))
     link = await _link(name, request, "Nothing was acknowledged.")
     report = await link.ask(Acknowledge)
     if not isinstance(report, AcknowledgeReport):

@@ -23,7 +23,7 @@ router = APIRouter(prefix="/v1/robots", tags=["robots"])
 
 @router.get(
     "",
-    operation_id="listRobots",
+    operation_id="list_robots",
     summary="All robots",
     responses={200: {"model": RobotsAnswer}, **problem_answers(500)},
 )
@@ -35,7 +35,7 @@ def list_robots() -> Response:
 
 @router.get(
     "/{name}",
-    operation_id="getRobot",
+    operation_id="get_robot",
     summary="One robot: joints, limits, tools",
     responses={200: {"model": RobotAnswer}, **problem_answers(404, 500)},
 )

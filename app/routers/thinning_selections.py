@@ -13,7 +13,7 @@ router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"
 
 @router.post(
     "",
-    operation_id="createThinningSelection",
+    operation_id="create_thinning_selection",
     summary="Blossoms along branches to targets, by the 5-8 pattern",
     responses={
         200: {"model": ThinningSelectionAnswer},

@@ -44,7 +44,9 @@ class NearestAnswer(BaseModel):
 
     kind: str = Field(description="angle, or displacement of the target")
     approach_angle_rad: float = Field(description="in the displaced target's approach frame")
-    displacement_m: list[float] = Field(description="added to the position; zero for an angle")
+    displacement_m: list[float] = Field(
+        description="added to the position, in the base frame; zero for an angle"
+    )
     verified: bool
 
 
@@ -148,12 +150,26 @@ class SummaryAnswer(BaseModel):
     elapsed_s: float
 
 
+class PoseAnswer(BaseModel):
+    """Where a frame stands in the robot's base frame."""
+
+    position_m: list[float] = Field(description="three numbers: the frame's origin [m]")
+    quaternion_xyzw: list[float] = Field(description="four numbers of length 1, real part last")
+
+
 class PlanAnswer(BaseModel):
     """A plan, with what it was made from as resolved."""
 
     id: str
     robot: str
     tool: str
+    frame: str | MISSING = Field(
+        default=MISSING,
+        description="in which the targets were sent; absent for base. All of the answer is in base",
+    )
+    frame_transform: PoseAnswer | MISSING = Field(
+        default=MISSING, description="its pose as it was used; absent for base"
+    )
     version: str = Field(description="of Prunus")
     model_version: str = Field(description="digest of the robot's model file")
     start_joints: list[float]

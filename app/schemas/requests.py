@@ -81,8 +81,24 @@ class PlanRequest(StrictBody):
 
     robot: str
     tool: str | MISSING = Field(default=MISSING, description="default: the robot's own")
-    frame: str | MISSING = Field(default=MISSING, description="only `base` for now")
+    frame: str | MISSING = Field(
+        default=MISSING,
+        description="in which the targets are: `base`, the default, or a name of GET /v1/frames",
+    )
     start_joints: JointVector | MISSING = Field(default=MISSING, description="default: home")
     targets: Annotated[list[TargetBody], Field(fail_fast=True)]
     scene: SceneBody | MISSING = Field(default=MISSING, description="not available yet")
     options: OptionsBody | MISSING = MISSING
+
+
+class PoseBody(StrictBody):
+    """Where a frame stood in the base frame when a request was read."""
+
+    position_m: Vector
+    quaternion_xyzw: Numbers
+
+
+class StoredPlanRequest(PlanRequest):
+    """A request as the store has it: with a pose its targets are in the base frame already."""
+
+    frame_transform: PoseBody | MISSING = MISSING

@@ -21,12 +21,16 @@ class BlossomBody(StrictBody):
 
 
 class BlossomBranchBody(StrictBody):
-    """A branch as a polyline from its origin to its tip, in the robot's base frame."""
+    """A branch as a polyline from its origin to its tip."""
 
     id: str = Field(description="not empty, once in a request")
     points_m: Annotated[
         list[Vector],
-        Field(fail_fast=True, description="two or more; neighbours 1e-6 to 100 m apart"),
+        Field(
+            fail_fast=True,
+            description="two or more; neighbours 1e-6 to 100 m apart. In the robot's base frame or "
+            "another: the answer is in the same, which a plan of its targets must name",
+        ),
     ]
     blossoms: Annotated[list[BlossomBody], Field(fail_fast=True, description="in any order")]
 

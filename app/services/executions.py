@@ -35,6 +35,7 @@ from app.services.execution_record import (
     execution_to_json,
     with_account,
 )
+from app.services.leases import LeaseService
 from app.services.links import Link, LinkService
 from app.services.solving import SolverLost, SolvingService
 from app.store import ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
@@ -85,12 +86,18 @@ class ExecutionService:
     """The executions of every robot. It lives on the event loop and is used there only."""
 
     def __init__(
-        self, store: ExecutionStore, plans: PlanStore, solving: SolvingService, links: LinkService
+        self,
+        store: ExecutionStore,
+        plans: PlanStore,
+        solving: SolvingService,
+        links: LinkService,
+        leases: LeaseService,
     ) -> None:
         self._store = store
         self._plans = plans
         self._solving = solving
         self._links = links
+        self._leases = leases
         self._orders: dict[str, _Order] = {}
         self._locks: dict[str, asyncio.Lock] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -101,8 +108,12 @@ class ExecutionService:
             execution = execution_from_json(document)
             await self._fail(execution, SERVICE_RESTARTED, "the service was started again")
 
-    async def create(self, plan_id: str, robot: str, key: NewKey | None = None) -> Execution:
+    async def create(
+        self, plan_id: str, robot: str, key: NewKey | None = None, *, lease_id: str = ""
+    ) -> Execution:
         """Take on an execution of a plan; it is stored as queued when this returns.
+
+        While somebody has a lease of the robot, `lease_id` must be its id, here and below.
 
         Raises:
             ProblemError: it is not taken on, and why.
@@ -110,6 +121,7 @@ class ExecutionService:
         """
         plan = await ordered_plan(self._plans, plan_id, robot)
         async with self._lock(robot):
+            self._leases.check(robot, lease_id)
             link = self._links.get(robot)
             if link is None:
                 raise no_worker("Nothing was started.")
@@ -181,26 +193,28 @@ class ExecutionService:
             raise execution_not_found()
         return document
 
-    async def pause(self, execution_id: str) -> Execution:
+    async def pause(self, execution_id: str, *, lease_id: str = "") -> Execution:
         """Ask the worker to pause; its account says when it has."""
-        return await self._command(execution_id, Pause, (EXECUTING,))
+        return await self._command(execution_id, lease_id, Pause, (EXECUTING,))
 
-    async def resume(self, execution_id: str) -> Execution:
+    async def resume(self, execution_id: str, *, lease_id: str = "") -> Execution:
         """Ask the worker to go on; its account says when it does."""
-        return await self._command(execution_id, Resume, (PAUSED,))
+        return await self._command(execution_id, lease_id, Resume, (PAUSED,))
 
-    async def cancel(self, execution_id: str) -> Execution:
+    async def cancel(self, execution_id: str, *, lease_id: str = "") -> Execution:
         """Cancel: at once while the worker cannot have begun, else as soon as it stands."""
-        return await self._command(execution_id, Cancel, (QUEUED, EXECUTING, PAUSED))
+        return await self._command(execution_id, lease_id, Cancel, (QUEUED, EXECUTING, PAUSED))
 
     async def _command(
         self,
         execution_id: str,
+        lease_id: str,
         command: Callable[[str], Pause | Resume | Cancel],
         allowed: tuple[str, ...],
     ) -> Execution:
         robot = execution_from_json(await self.document(execution_id)).robot
         async with self._lock(robot):
+            self._leases.check(robot, lease_id)
             execution = execution_from_json(await self.document(execution_id))
             order = self._orders.get(robot)
             if execution.status not in allowed or order is None:

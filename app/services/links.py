@@ -107,6 +107,11 @@ class LinkService:
         """The robot's link, if a worker is connected."""
         return self._links.get(robot)
 
+    @property
+    def count(self) -> int:
+        """How many robots have a worker connected."""
+        return len(self._links)
+
     async def instance(self, robot: str) -> RobotInstance:
         """The robot that a worker wants to join.
 

@@ -7,7 +7,7 @@ import orjson
 from pydantic import ValidationError
 
 from app.services.execution_record import PLAN_OUTDATED
-from app.services.wire import parse_request, problem_from_wire
+from app.services.wire import parse_stored_request, problem_from_wire
 from hardware.clock import timestamp
 from hardware.messages import Failure, SegmentTimes, TargetMotion, encode
 from solver import Approach, InvalidProblem, Problem
@@ -42,7 +42,7 @@ def target_motions(request: str, answer: str, execution_id: str) -> tuple[str, .
 def _problem(request: Mapping[str, Any], plan: Mapping[str, Any]) -> Problem:
     # As it was resolved then: a default may have changed since.
     resolved = {name: plan[name] for name in ("robot", "tool", "start_joints", "options")}
-    return problem_from_wire(parse_request(orjson.dumps({**request, **resolved})))
+    return problem_from_wire(parse_stored_request(orjson.dumps({**request, **resolved})))
 
 
 def _chosen(entry: Mapping[str, Any]) -> ChosenApproach:

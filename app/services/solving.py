@@ -6,36 +6,59 @@ import multiprocessing
 import os
 import signal
 import threading
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import TypeVar
 
 import orjson
 
 from app.errors import ProblemError
+from app.logs import configure_logs
 from app.services.comparing import ComparisonOrder, compare_to_bytes
+from app.services.measures import Measures, NoMeasures, PlanFigures
 from app.services.motions import target_motions
 from app.services.wire import plan_to_wire
 from hardware.messages import Failure
-from solver import Problem, solve
+from solver import Plan, Problem, solve
 
 logger = logging.getLogger(__name__)
 
 Result = TypeVar("Result")
+
+# A plan takes from milliseconds to seconds, so a queue of them is shorter after this.
+OVERLOAD_RETRY_S = 2
 
 
 class SolverLost(Exception):
     """A solver process died over what it was given. The pool has been started again."""
 
 
-def solve_to_json(problem: Problem, plan_id: str) -> bytes:
-    """The answer's body; runs in a worker."""
-    return orjson.dumps(plan_to_wire(solve(problem), plan_id))
+def solve_to_json(problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
+    """The answer's body, and its figures; runs in a worker."""
+    plan = solve(problem)
+    return orjson.dumps(plan_to_wire(plan, plan_id)), plan_figures(problem, plan)
 
 
-def _start_worker(lifeline: Connection) -> None:
+def plan_figures(problem: Problem, plan: Plan) -> PlanFigures:
+    """What is counted of a plan."""
+    reasons = [entry.reason.code for entry in plan.approaches if entry.reason is not None]
+    return PlanFigures(problem.options.method, plan.planned, Counter(reasons), plan.elapsed_s)
+
+
+@dataclass(frozen=True)
+class LogOptions:
+    """How the solver processes log; see `app.logs`."""
+
+    log_format: str = "json"
+    level: str = "info"
+
+
+def _start_worker(lifeline: Connection, logs: LogOptions) -> None:
+    configure_logs(logs.log_format, logs.level)
     # Ctrl-C reaches the whole process group; the service decides when its workers end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_service, args=(lifeline,), daemon=True).start()
@@ -57,11 +80,11 @@ def _is_warm() -> bool:
 class _Pool:
     """An executor and the pipe its workers hang on."""
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, logs: LogOptions) -> None:
         context = multiprocessing.get_context("spawn")
         self._far_end, self._near_end = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(
-            workers, mp_context=context, initializer=_start_worker, initargs=(self._far_end,)
+            workers, mp_context=context, initializer=_start_worker, initargs=(self._far_end, logs)
         )
         self.warming: list[Future[bool]] = [self.executor.submit(_is_warm) for _ in range(workers)]
 
@@ -80,11 +103,28 @@ class _Pool:
 
 
 class SolvingService:
-    """A pool of worker processes that is rebuilt when it breaks."""
+    """A pool of worker processes that is rebuilt when it breaks.
 
-    def __init__(self, workers: int) -> None:
+    Args:
+        workers: how many processes.
+        most_waiting: so many problems may wait for one of them.
+        measures: who counts what they do.
+        logs: how they log.
+    """
+
+    def __init__(
+        self,
+        workers: int,
+        most_waiting: int,
+        measures: Measures | None = None,
+        logs: LogOptions | None = None,
+    ) -> None:
         self._workers = workers
-        self._pool = _Pool(workers)
+        self._most_waiting = most_waiting
+        self._measures = measures or NoMeasures()
+        self._logs = logs or LogOptions()
+        self._tasks = self._solving = 0
+        self._pool = _Pool(workers, self._logs)
         self._lock = threading.Lock()
 
     async def is_ready(self) -> bool:
@@ -97,10 +137,17 @@ class SolvingService:
         """The answer's body for a problem.
 
         Raises:
-            ProblemError: 503, the worker died over it.
+            ProblemError: 503, the worker died over it, or too many are waiting.
         """
+        if self._solving >= self._workers + self._most_waiting:
+            raise ProblemError(
+                503, "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
+            )
+        self._solving += 1
         try:
-            return await self._run(lambda pool: pool.submit(solve_to_json, problem, plan_id))
+            answer, figures = await self._run(
+                lambda pool: pool.submit(solve_to_json, problem, plan_id)
+            )
         except SolverLost:
             raise ProblemError(
                 503, "solver_unavailable", "The solver was lost; it has been started again."
@@ -108,6 +155,10 @@ class SolvingService:
         except asyncio.CancelledError:
             # Only the server's shutdown cancels a request; its client still gets an answer.
             raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+        finally:
+            self._solving -= 1
+        self._measures.solved(figures)
+        return answer
 
     async def motions(
         self, request: str, answer: str, execution_id: str
@@ -131,6 +182,7 @@ class SolvingService:
 
     async def _run(self, submit: Callable[[ProcessPoolExecutor], Future[Result]]) -> Result:
         pool = self._pool
+        self._count(1)
         try:
             try:
                 future = submit(pool.executor)
@@ -140,14 +192,22 @@ class SolvingService:
                 future = submit(pool.executor)
             return await asyncio.wrap_future(future)
         except BrokenProcessPool:
+            self._measures.solver_lost()
             await asyncio.to_thread(self._replace, pool)
             raise SolverLost from None
+        finally:
+            self._count(-1)
+
+    def _count(self, change: int) -> None:
+        self._tasks += change
+        running = min(self._tasks, self._workers)
+        self._measures.solver_load(running, self._tasks - running)
 
     def _replace(self, broken: _Pool) -> _Pool:
         with self._lock:
             if self._pool is broken:
                 logger.error("a solver process died; the pool is rebuilt")
-                self._pool = _Pool(self._workers)
+                self._pool = _Pool(self._workers, self._logs)
                 broken.close()
             return self._pool
 

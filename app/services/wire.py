@@ -4,14 +4,15 @@ Fields that are absent are left out, in both directions; nothing is ever null.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.schemas.requests import PlanRequest
+from app.schemas.requests import PlanRequest, StoredPlanRequest
+from app.services.sent_frames import FindFrame, pose_to_wire, sent_frame
 from app.version import prunus_version
 from hardware.instances import load_instance
 from solver import (
@@ -30,9 +31,8 @@ from solver import (
     Transfer,
     UnknownRobot,
 )
+from solver.frames import NamedFrame, targets_in_base
 from solver.strawberry.mechanism import NAME as STRAWBERRY
-
-BASE_FRAME = "base"
 
 
 def parse_request(body: bytes) -> PlanRequest:
@@ -44,16 +44,37 @@ def parse_request(body: bytes) -> PlanRequest:
     return PlanRequest.model_validate_json(body)
 
 
-def problem_from_wire(request: PlanRequest) -> Problem:
-    """The problem that a request asks for.
+def parse_stored_request(body: bytes) -> StoredPlanRequest:
+    """A request as `stored_request` wrote it, or an earlier version of the service.
+
+    Raises:
+        pydantic.ValidationError: not JSON, or not the schema's structure.
+    """
+    return StoredPlanRequest.model_validate_json(body)
+
+
+def problem_from_wire(request: PlanRequest, find_frame: FindFrame | None = None) -> Problem:
+    """The problem that a request asks for, with its targets in the base frame.
+
+    Args:
+        request: as sent, or as stored.
+        find_frame: the registered frames; None where there is no service to have any.
 
     Raises:
         InvalidProblem: with every fault found; no fault repeats what was sent.
     """
     given: Mapping[str, Any] = request.model_dump()
     faults = list(_not_available(given))
+    targets = _targets(given)
+    frame = None
     try:
-        problem = _problem(given, load_instance(request.robot).robot)
+        frame = sent_frame(given, find_frame)
+        if frame is not None and "frame_transform" not in given:
+            targets = targets_in_base(targets, frame.base_from_frame)
+    except InvalidProblem as error:
+        faults += error.faults
+    try:
+        problem = _problem(given, load_instance(request.robot).robot, targets, frame)
     except UnknownRobot as error:
         faults.append(Fault(("robot",), _why_unknown(error)))
     except InvalidProblem as error:
@@ -71,8 +92,8 @@ def _why_unknown(error: UnknownRobot) -> str:
     return f"unknown robot; known: {', '.join(error.known)}"
 
 
-def _problem(given: Mapping[str, Any], robot: Robot) -> Problem:
-    targets = [
+def _targets(given: Mapping[str, Any]) -> Sequence[Target]:
+    return [
         Target(
             target["id"],
             tuple(target["position_m"]),
@@ -81,27 +102,39 @@ def _problem(given: Mapping[str, Any], robot: Robot) -> Problem:
         )
         for target in given["targets"]
     ]
+
+
+def _problem(
+    given: Mapping[str, Any], robot: Robot, targets: Sequence[Target], frame: NamedFrame | None
+) -> Problem:
     options = Options(**given.get("options", {}))
-    return Problem(robot, targets, given.get("tool"), given.get("start_joints"), options)
+    return Problem(robot, targets, given.get("tool"), given.get("start_joints"), options, frame)
 
 
 def _not_available(given: Mapping[str, Any]) -> list[Fault]:
-    faults = []
-    if given.get("frame", BASE_FRAME) != BASE_FRAME:
-        faults.append(Fault(("frame",), f"only {BASE_FRAME!r} is available yet"))
     if "scene" in given:
-        faults.append(Fault(("scene",), "obstacles are not available yet"))
-    return faults
+        return [Fault(("scene",), "obstacles are not available yet")]
+    return []
 
 
 def plan_to_wire(plan: Plan, plan_id: str) -> dict[str, Any]:
     """A plan as JSON values: the body of the answer, and the file that `prunus plan` writes."""
     problem = plan.problem
     include = frozenset(problem.options.include or ())
+    frame = problem.frame
+    sent_in = (
+        {}
+        if frame is None
+        else {
+            "frame": frame.name,
+            "frame_transform": pose_to_wire(frame.base_from_frame),
+        }
+    )
     return {
         "id": plan_id,
         "robot": problem.robot.name,
         "tool": problem.mounted_tool.name,
+        **sent_in,
         "version": prunus_version(),
         "model_version": problem.robot.version,
         "start_joints": [_number(value) for value in problem.start],

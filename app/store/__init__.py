@@ -1,8 +1,9 @@
-"""What persists: plans with their requests, executions, comparisons, and idempotency keys."""
+"""What persists: plans with their requests, executions, comparisons, frames, keys and tokens."""
 
 from app.store.comparisons import ComparisonStore
 from app.store.database import open_engine
 from app.store.executions import ExecutionRow, ExecutionStore, RobotBusy
+from app.store.frames import FramesFull, FrameStore, StoredFrame
 from app.store.idempotency import (
     IdempotencyStore,
     KeyedAnswer,
@@ -14,11 +15,14 @@ from app.store.idempotency import (
     new_entry,
 )
 from app.store.plans import PlanStore, StoredPlan
+from app.store.tokens import TokenRow, TokenStore
 
 __all__ = [
     "ComparisonStore",
     "ExecutionRow",
     "ExecutionStore",
+    "FrameStore",
+    "FramesFull",
     "IdempotencyStore",
     "KeyTaken",
     "KeyedAnswer",
@@ -27,7 +31,10 @@ __all__ = [
     "PlanStore",
     "RobotBusy",
     "StoredEntry",
+    "StoredFrame",
     "StoredPlan",
+    "TokenRow",
+    "TokenStore",
     "insert_key",
     "new_entry",
     "open_engine",

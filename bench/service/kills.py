@@ -85,11 +85,9 @@ def kill_rounds(trial: Trial) -> dict[str, Any]:
         raise DatabaseNotEmpty(make_url(url).render_as_string(hide_password=True))
     service = KilledService(trial.folder, trial.database_url)
     account, stopping = Account(), threading.Event()
-    clients = [
-        *(LoadClient(f"plans {n}", service.url, trial.seed, account, stopping) for n in range(PLAN_CLIENTS)),
-        JobClient("jobs", service.url, trial.seed, account, stopping),
-        ExecutionClient("executions", service.url, trial.seed, account, stopping),
-    ]  # fmt: skip
+    shared = (service.url, trial.seed, account, stopping)
+    clients = [LoadClient(f"plans {number}", *shared) for number in range(PLAN_CLIENTS)]
+    clients += [JobClient("jobs", *shared), ExecutionClient("executions", *shared)]
     started = time.monotonic()
     with ExitStack() as stack:
         stack.callback(engine.dispose)

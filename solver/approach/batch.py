@@ -16,7 +16,7 @@ from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Problem, Target
 from solver.robots.model import Array
 from solver.robots.rigid import inverse
-from solver.tolerances import BATCH_PART
+from solver.tolerances import BATCH_PART, EXCHANGE_DENSITY
 
 __all__ = ["NO_BRANCH", "Optima", "chosen_paths", "closed_form_optima", "feasible_arcs"]
 
@@ -134,6 +134,37 @@ def chosen_paths(
     joints, suspicious = np.empty((n, len(retreats), 6)), np.empty(n, dtype=np.bool_)
     own = np.ascontiguousarray(numbers[sides, np.arange(n)])
     paths_of_many(own, branches, angles_rad, retreats, jump_cosines(retreats), joints, suspicious)
+    return ChosenPaths(joints, suspicious)
+
+
+def finer_paths(
+    problem: Problem,
+    positions: Array,
+    directions: Array,
+    optima: Optima,
+    which: NDArray[np.int64],
+) -> ChosenPaths:
+    """Cut-ins of some of many targets' optima, with EXCHANGE_DENSITY rows for each one.
+
+    Arguments are those of `closed_form_optima` and its answer; `which` are indices of targets.
+    """
+    options = problem.options
+    numbers = packed_targets(
+        problem, positions[which], directions[which], np.asarray(problem.start)
+    )
+    own = np.ascontiguousarray(numbers[(1 - optima.tool_sides[which]) // 2, np.arange(len(which))])
+    rows = (options.path_points - 1) * EXCHANGE_DENSITY + 1
+    retreats = np.linspace(options.standoff_m, 0.0, rows)
+    joints, suspicious = np.empty((len(which), rows, 6)), np.empty(len(which), dtype=np.bool_)
+    paths_of_many(
+        own,
+        optima.branches[which],
+        optima.angles_rad[which],
+        retreats,
+        jump_cosines(retreats),
+        joints,
+        suspicious,
+    )
     return ChosenPaths(joints, suspicious)
 
 

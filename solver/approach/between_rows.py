@@ -35,3 +35,10 @@ def may_leave_between(rows, lower, upper):
                 if vertex - cushion < lower[i] or vertex + cushion > upper[i]:
                     return True
     return False
+
+
+@kernel
+def many_may_leave_between(paths, lower, upper, leaves):
+    """Writes `may_leave_between` of n cut-ins, shape (n, rows, 6), to `leaves`, shape (n,)."""
+    for k in range(len(paths)):
+        leaves[k] = may_leave_between(paths[k], lower, upper)

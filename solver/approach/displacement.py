@@ -204,6 +204,15 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
 
 
 @kernel
+def rows_displacement_margins(g, lower, upper, poses, retreats, branches, paths, margins):
+    """Writes the margins of n cut-ins, shape (n,) [m]; see `rows_displacement_margin`."""
+    for k in range(len(paths)):
+        margins[k], _, _ = rows_displacement_margin(
+            g, lower, upper, poses[k], retreats, branches[k], paths[k]
+        )
+
+
+@kernel
 def behind(pose, retreat, position):
     """Writes the tool's place at a retreat behind a pose, shape (3,) [m]."""
     for i in range(3):

@@ -12,12 +12,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from solver.approach.displacement import displacement_margin, rows_displacement_margin
+from solver.approach.displacement import displacement_margin, rows_displacement_margins
 from solver.approach.robust_search import robust_pieces
 from solver.approach.task import ApproachTask
 from solver.kinematics.families import rail_of
-from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem import Options, Target
 from solver.robots.model import Array, Robot, Tool
@@ -81,16 +82,34 @@ def path_displacement_margin(
         branch: inverse kinematics branch.
         path_joints: the cut-in, evenly spaced, standby first, shape (rows, 6) [rad].
     """
-    rows = np.ascontiguousarray(path_joints, dtype=np.float64)
+    rows = np.asarray(path_joints, dtype=np.float64)
     if (rail := rail_of(robot, tool)) is not None:
-        robot, rows = rail.arm_at(float(rows[-1, 0])), np.ascontiguousarray(rows[:, 1:])
-    margin, _, _ = rows_displacement_margin(
+        robot, rows = rail.arm_at(float(rows[-1, 0])), rows[:, 1:]
+    return float(displacement_margins(robot, tool, options, np.array([branch]), rows[None])[0])
+
+
+def displacement_margins(
+    robot: Robot, tool: Tool, options: Options, branches: NDArray[np.int64], paths: Array
+) -> Array:
+    """`path_displacement_margin` of n cut-ins of an arm that is not on a rail, shape (n,) [m].
+
+    Args:
+        robot: an arm with a spherical wrist.
+        tool: its tool.
+        options: of the problem.
+        branches: inverse kinematics branches, shape (n,).
+        paths: evenly spaced, standby first, shape (n, rows, 6) [rad].
+    """
+    paths = np.ascontiguousarray(paths, dtype=np.float64)
+    margins = np.empty(len(paths))
+    rows_displacement_margins(
         wrist_geometry(robot, tool),
         np.asarray(robot.lower + options.limit_margin_rad),
         np.asarray(robot.upper - options.limit_margin_rad),
-        inverse(robot.mount) @ forward_kinematics(robot, tool, rows[-1]),
-        np.linspace(options.standoff_m, 0.0, len(rows)),
-        branch,
-        rows,
+        np.ascontiguousarray(inverse(robot.mount) @ many_poses(robot, tool, paths[:, -1])),
+        np.linspace(options.standoff_m, 0.0, paths.shape[1]),
+        branches,
+        paths,
+        margins,
     )
-    return float(margin)
+    return margins

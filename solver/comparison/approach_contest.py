@@ -16,7 +16,7 @@ from solver.kinematics.forward import forward_kinematics
 from solver.methods.any_arm import Solve
 from solver.methods.candidate import Candidate
 from solver.nlp.cold_start import solve_cold
-from solver.planner import solve_between_rows_too
+from solver.one_target import solve_between_rows_too
 from solver.problem import Problem
 from solver.proposal import propose
 from solver.registry import METHODS

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import httpx2
 import pytest
@@ -64,13 +64,16 @@ def _first_line(process: subprocess.Popen[str]) -> str:
 
 
 @contextlib.contextmanager
-def running_server(data_dir: Path, port: str = "0", **environment: str) -> Iterator[Server]:
+def running_server(
+    data_dir: Path, port: str = "0", *, stderr: IO[str] | None = None, **environment: str
+) -> Iterator[Server]:
     command = [sys.executable, "-m", "app", "serve", "--port", port, "--data-dir", str(data_dir)]
     with subprocess.Popen(
         command,
         cwd=REPOSITORY,
         env={**os.environ, **environment},
         stdout=subprocess.PIPE,
+        stderr=stderr,
         text=True,
     ) as process:
         try:

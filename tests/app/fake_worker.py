@@ -121,7 +121,14 @@ def link_url(server: Server, robot: str) -> str:
 @contextlib.contextmanager
 def link(server: Server, robot: str = "tabletop-sim") -> Iterator[ClientConnection]:
     """A connection over which nothing has been said."""
-    with connect(link_url(server, robot), proxy=None, max_size=None, close_timeout=2) as connection:
+    token = server.client.headers.get("authorization")
+    with connect(
+        link_url(server, robot),
+        proxy=None,
+        max_size=None,
+        close_timeout=2,
+        additional_headers={} if token is None else {"Authorization": token},
+    ) as connection:
         yield connection
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from app.access_guard import REVOKED
 from app.demo import MOST_ERROR_M
 from app.demo_request import demo_request
 from app.plan_table import HEADINGS, MEASURED_HEADINGS, plan_rows
@@ -130,7 +131,7 @@ def test_close_codes_are_documented() -> None:
     documented = {row[0] for row in rows("docs/errors.md", "Close codes of the robot link")[2:]}
     used = {
         links.NOT_A_MESSAGE, links.UNKNOWN_ROBOT, links.SILENT, links.HAS_A_WORKER,
-        links.WRONG_WORKER, SERVICE_FAULT,
+        links.WRONG_WORKER, SERVICE_FAULT, REVOKED,
     }  # fmt: skip
     assert documented == set(map(str, used))
 

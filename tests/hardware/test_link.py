@@ -1,5 +1,6 @@
 """The worker's end of the robot link, against a small server of the test's own."""
 
+import logging
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -8,6 +9,7 @@ from typing import TypeVar
 
 import pytest
 from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
 from hardware.link import LinkRefused, RobotLink, link_url
@@ -195,7 +197,9 @@ def test_what_came_before_a_loss_is_not_obeyed_after_it() -> None:
         assert first(link.next_message) == Pause("new")
 
 
-@pytest.mark.parametrize(("code", "final"), [(4404, True), (4412, True), (4409, False)])
+@pytest.mark.parametrize(
+    ("code", "final"), [(4401, True), (4404, True), (4412, True), (4409, False)]
+)
 def test_some_refusals_are_final(code: int, final: bool) -> None:
     asked: list[int] = []
 
@@ -259,3 +263,37 @@ def test_numbers_that_are_none_are_no_message() -> None:
     assert spoiled != encode(IDLE)
     with pytest.raises(InvalidMessage):
         decode_from_worker(spoiled)
+
+
+@pytest.mark.parametrize("status", [401, 403])
+def test_a_token_that_is_not_accepted_is_final_and_not_told(
+    status: int, caplog: pytest.LogCaptureFixture
+) -> None:
+    asked: list[str | None] = []
+
+    def refuse(connection: ServerConnection, request: Request) -> Response:
+        asked.append(request.headers.get("Authorization"))
+        return connection.respond(status, "no")
+
+    news: list[str] = []
+    with (
+        caplog.at_level(logging.DEBUG),
+        serve(lambda _: None, "127.0.0.1", 0, process_request=refuse) as server,
+    ):
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        url = f"http://127.0.0.1:{server.socket.getsockname()[1]}"
+        caplog.clear()
+        link = RobotLink(link_url(url, "tabletop"), HELLO, news.append, "qq7z")
+        try:
+            wait_until(lambda: link.refusal is not None, WAIT_S)
+        finally:
+            link.close()
+            server.shutdown()
+            thread.join()
+    assert asked == ["Bearer qq7z"]
+    assert str(status) in str(link.refusal)
+    assert "token" in str(link.refusal)
+    assert news == [str(link.refusal)]
+    told = [r.getMessage() for r in caplog.records if not r.name.startswith("websockets.server")]
+    assert "qq7z" not in "".join([*news, *told])

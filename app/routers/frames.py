@@ -1,0 +1,121 @@
+"""Frames: where cameras stand in the robot's base frame, given or estimated from points."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.routers.common import body_of, json_body, problem_answers
+from app.schemas.frames import FrameAnswer, FrameRegistrationRequest, FrameRequest, FramesAnswer
+from app.services.frames import NAME_PATTERN, FrameService, location_of
+
+router = APIRouter(prefix="/v1/frames", tags=["frames"])
+
+# Told, not checked, here: FastAPI's own answer to a name that is none is no problem document.
+Name = Annotated[
+    str,
+    Path(
+        description="the frame's name: 1 to 100 characters of A-Z, a-z, 0-9, _, - and ., no dot "
+        "first; not `base`",
+        json_schema_extra={"pattern": f"^{NAME_PATTERN}$"},
+    ),
+]
+_LOCATION: dict[str, Any] = {"Location": {"schema": {"type": "string"}}}
+
+
+@router.get(
+    "",
+    operation_id="list_frames",
+    summary="All registered frames",
+    responses={200: {"model": FramesAnswer}, **problem_answers(500)},
+)
+async def list_frames(request: Request) -> Response:
+    """By name, without `residuals_m`; `base`, the robot's own, is not among them."""
+    body = await run_in_threadpool(_service(request).documents)
+    return Response(body, media_type="application/json")
+
+
+@router.put(
+    "/{name}",
+    operation_id="put_frame",
+    summary="Register a frame, or replace it",
+    status_code=201,
+    responses={
+        200: {"model": FrameAnswer, "description": "It replaces an earlier one of this name"},
+        201: {"model": FrameAnswer, "headers": _LOCATION},
+        **problem_answers(409, 413, 415, 422, 500),
+    },
+    openapi_extra=body_of(FrameRequest),
+)
+async def put_frame(name: Name, request: Request) -> Response:
+    """The pose of the frame in the robot's base frame (base_from_frame), with one rotation.
+
+    `check_pairs` are compared with it, and warnings tell whether it seems inverted, or the points
+    scaled or mirrored; it is registered all the same. Plans that exist do not change.
+    """
+    body = await json_body(request)
+    stored = await run_in_threadpool(
+        lambda: _service(request).put(name, FrameRequest.model_validate_json(body))
+    )
+    if stored.is_new:
+        return _created(name, stored.document)
+    return Response(stored.document, media_type="application/json")
+
+
+@router.post(
+    "/{name}/registration",
+    operation_id="register_frame",
+    summary="Estimate a frame from points, and register it",
+    status_code=201,
+    responses={
+        201: {"model": FrameAnswer, "headers": _LOCATION},
+        **problem_answers(409, 413, 415, 422, 500),
+    },
+    openapi_extra=body_of(FrameRegistrationRequest),
+)
+async def register_frame(name: Name, request: Request) -> Response:
+    """By least squares from points measured in the frame and in the robot's base frame.
+
+    It is registered with its warnings, in place of what had the name. Points on a line, mirror
+    images, and points that do not belong together are refused.
+    """
+    body = await json_body(request)
+    stored = await run_in_threadpool(
+        lambda: _service(request).register(name, FrameRegistrationRequest.model_validate_json(body))
+    )
+    return _created(name, stored.document)
+
+
+@router.get(
+    "/{name}",
+    operation_id="get_frame",
+    summary="One frame",
+    responses={200: {"model": FrameAnswer}, **problem_answers(404, 500)},
+)
+async def get_frame(name: Name, request: Request) -> Response:
+    """As it was answered when it was registered."""
+    document = await run_in_threadpool(_service(request).document, name)
+    return Response(document, media_type="application/json")
+
+
+@router.delete(
+    "/{name}",
+    operation_id="delete_frame",
+    summary="Remove a frame",
+    status_code=204,
+    responses={204: {"description": "Removed"}, **problem_answers(404, 500)},
+)
+async def delete_frame(name: Name, request: Request) -> Response:
+    """Plans that were made in it stay, and can be executed."""
+    await run_in_threadpool(_service(request).remove, name)
+    return Response(status_code=204)
+
+
+def _created(name: str, document: str) -> Response:
+    headers = {"Location": location_of(name)}
+    return Response(document, 201, media_type="application/json", headers=headers)
+
+
+def _service(request: Request) -> FrameService:
+    service: FrameService = request.app.state.frames
+    return service

@@ -1,0 +1,106 @@
+"""Leases of robots: one controlling client each."""
+
+import orjson
+from fastapi import APIRouter, Request, Response
+from pydantic import MISSING
+from starlette.concurrency import run_in_threadpool
+
+from app.errors import ProblemError
+from app.routers.common import body_of, json_body, problem_answers
+from app.schemas.leases import LeaseAnswer, LeaseRenewal, LeaseRequest, LeaseStateAnswer
+from app.services.execution_checks import robot_instance
+from app.services.leases import USUAL_LEASE_S, Lease, LeaseService
+
+router = APIRouter(prefix="/v1/robots/{name}/lease", tags=["robots"])
+
+
+@router.post(
+    "",
+    operation_id="create_lease",
+    status_code=201,
+    summary="Take control of a robot for a while",
+    responses={
+        201: {
+            "model": LeaseAnswer,
+            "headers": {"Location": {"schema": {"type": "string"}}},
+        },
+        **problem_answers(404, 409, 413, 415, 422, 500),
+    },
+    openapi_extra=body_of(LeaseRequest),
+)
+async def create_lease(name: str, request: Request) -> Response:
+    """While it lasts, only requests with the header `Prunus-Lease` start and change executions.
+
+    Anybody may still stop the robot. What is being executed goes on when the lease ends.
+    """
+    given = LeaseRequest.model_validate_json(await json_body(request))
+    await run_in_threadpool(robot_instance, name)
+    duration_s = USUAL_LEASE_S if given.duration_s is MISSING else given.duration_s
+    lease = _service(request).take(name, given.holder, duration_s)
+    location = f"/v1/robots/{name}/lease/{lease.id}"
+    return _answer(lease, 201, {"Location": location})
+
+
+@router.get(
+    "",
+    operation_id="get_lease",
+    summary="Who controls a robot",
+    responses={200: {"model": LeaseStateAnswer}, **problem_answers(404, 500)},
+)
+async def get_lease(name: str, request: Request) -> Response:
+    """404 while nobody has a lease of it."""
+    await run_in_threadpool(robot_instance, name)
+    lease = _service(request).current(name)
+    if lease is None:
+        raise ProblemError(404, "not_found", "Nobody has a lease of this robot.")
+    return Response(orjson.dumps(_state(lease)), media_type="application/json")
+
+
+@router.put(
+    "/{lease_id}",
+    operation_id="renew_lease",
+    summary="Keep control of a robot",
+    responses={200: {"model": LeaseAnswer}, **problem_answers(404, 413, 415, 422, 500)},
+    openapi_extra=body_of(LeaseRenewal),
+)
+async def renew_lease(name: str, lease_id: str, request: Request) -> Response:
+    """It lasts from now on. Renew it well before it ends: after that it is 404."""
+    given = LeaseRenewal.model_validate_json(await json_body(request))
+    await run_in_threadpool(robot_instance, name)
+    duration_s = None if given.duration_s is MISSING else given.duration_s
+    return _answer(_service(request).renew(name, lease_id, duration_s), 200, {})
+
+
+@router.delete(
+    "/{lease_id}",
+    operation_id="delete_lease",
+    status_code=204,
+    summary="Give control of a robot back",
+    responses=problem_answers(404, 500),
+)
+async def delete_lease(name: str, lease_id: str, request: Request) -> Response:
+    """Others may take it at once."""
+    await run_in_threadpool(robot_instance, name)
+    _service(request).give_back(name, lease_id)
+    return Response(status_code=204)
+
+
+def _service(request: Request) -> LeaseService:
+    service: LeaseService = request.app.state.leases
+    return service
+
+
+def _state(lease: Lease) -> dict[str, str | float]:
+    return {
+        "robot": lease.robot,
+        "holder": lease.holder,
+        "expires_at": lease.expires_at,
+        "duration_s": lease.duration_s,
+    }
+
+
+def _answer(lease: Lease, status: int, headers: dict[str, str]) -> Response:
+    body = orjson.dumps({"lease_id": lease.id, **_state(lease)})
+    # The id is as good as a key: nothing between here and the client may keep it.
+    headers |= {"Cache-Control": "no-store"}
+    return Response(body, status, media_type="application/json", headers=headers)

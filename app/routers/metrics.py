@@ -1,0 +1,36 @@
+"""Metrics for Prometheus."""
+
+from fastapi import APIRouter, Request, Response
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.concurrency import run_in_threadpool
+
+from app.metrics import MEDIA_TYPE, Metrics
+from app.routers.common import problem_answers
+from app.services.links import LinkService
+from app.store.counts import stored_counts
+
+router = APIRouter(tags=["health"])
+
+
+@router.get(
+    "/metrics",
+    operation_id="get_metrics",
+    summary="Metrics in the text format of Prometheus",
+    response_class=Response,
+    responses={
+        200: {"content": {"text/plain": {"schema": {"type": "string"}}}},
+        **problem_answers(500),
+    },
+)
+async def get_metrics(request: Request) -> Response:
+    """What the store holds is left as it was counted last when it does not answer."""
+    metrics: Metrics = request.app.state.metrics
+    links: LinkService = request.app.state.links
+    metrics.connected(links.count)
+    try:
+        counts = await run_in_threadpool(stored_counts, request.app.state.engine)
+    except SQLAlchemyError:
+        pass  # counted, where the engine reports errors
+    else:
+        metrics.stored(counts.jobs, counts.executions)
+    return Response(metrics.text(), media_type=MEDIA_TYPE)

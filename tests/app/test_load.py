@@ -1,0 +1,30 @@
+import asyncio
+from urllib.parse import urlsplit
+
+from bench.service.client import Client
+from bench.service.memory import sample
+from bench.service.mixed import mixed_load
+from tests.app.conftest import Server
+
+DURATION_S = 60
+MOST_GROWTH_KIB = 300 * 1024
+
+
+def test_mixed_load_for_a_minute(server: Server) -> None:
+    samples: list[tuple[float, int]] = []
+
+    async def load() -> None:
+        client = Client("127.0.0.1", urlsplit(server.url).port or 0)
+        sampling = asyncio.create_task(sample(server.process.pid, 2, samples))
+        tally = await mixed_load(client, DURATION_S, 1, compare=False)
+        sampling.cancel()
+        client.close()
+        assert tally.errors == 0, tally.notes
+        assert tally.done["plan"] > 20
+        assert tally.done["read"] > 10
+        assert tally.provoked
+
+    asyncio.run(load())
+    # The first third fills heaps and caches.
+    settled = [kib for at, kib in samples if at > DURATION_S / 3]
+    assert settled[-1] - settled[0] < MOST_GROWTH_KIB, samples
