@@ -54,16 +54,28 @@ class KilledService:
         Raises:
             ServiceDied: none came.
         """
+        self._wait_for("/healthz")
+
+    def wait_until_ready(self) -> None:
+        """Wait until the kernels are warm.
+
+        Raises:
+            ServiceDied: they never were.
+        """
+        self._wait_for("/readyz")
+
+    def _wait_for(self, path: str) -> None:
         deadline = time.monotonic() + HEALTHY_S
         with httpx2.Client(base_url=self.url, timeout=5, trust_env=False) as client:
             while time.monotonic() < deadline:
                 if self._process is None or self._process.poll() is not None:
                     break
                 try:
-                    if client.get("/healthz").status_code == 200:
+                    if client.get(path).status_code == 200:
                         return
                 except httpx2.TransportError:
-                    time.sleep(POLL_S)
+                    pass
+                time.sleep(POLL_S)
         raise ServiceDied(self.log.read_text(errors="replace")[-2000:])
 
     def kill(self) -> None:

@@ -94,7 +94,8 @@ def kill_rounds(trial: Trial) -> dict[str, Any]:
         stack.callback(stopping.set)
         stack.callback(service.kill)
         service.start()
-        service.wait_until_healthy()
+        # Or every life would compile kernels, and none would get to solving.
+        service.wait_until_ready()
         _start_arm(stack, service.url, trial.folder)
         for client in clients:
             client.start()
