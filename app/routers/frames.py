@@ -6,8 +6,10 @@ from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, problem_answers
+from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.frames import FrameAnswer, FrameRegistrationRequest, FrameRequest, FramesAnswer
 from app.services.frames import NAME_PATTERN, FrameService, location_of
+from app.store import NewKey
 
 router = APIRouter(prefix="/v1/frames", tags=["frames"])
 
@@ -68,10 +70,10 @@ async def put_frame(name: Name, request: Request) -> Response:
     summary="Estimate a frame from points, and register it",
     status_code=201,
     responses={
-        201: {"model": FrameAnswer, "headers": _LOCATION},
+        201: {"model": FrameAnswer, "headers": CREATED_HEADERS},
         **problem_answers(409, 413, 415, 422, 500),
     },
-    openapi_extra=body_of(FrameRegistrationRequest),
+    openapi_extra=with_key(body_of(FrameRegistrationRequest)),
 )
 async def register_frame(name: Name, request: Request) -> Response:
     """By least squares from points measured in the frame and in the robot's base frame.
@@ -80,10 +82,16 @@ async def register_frame(name: Name, request: Request) -> Response:
     images, and points that do not belong together are refused.
     """
     body = await json_body(request)
-    stored = await run_in_threadpool(
-        lambda: _service(request).register(name, FrameRegistrationRequest.model_validate_json(body))
-    )
-    return _created(name, stored.document)
+
+    async def create(key: NewKey | None) -> Response:
+        stored = await run_in_threadpool(
+            lambda: _service(request).register(
+                name, FrameRegistrationRequest.model_validate_json(body), key
+            )
+        )
+        return _created(name, stored.document)
+
+    return await once(request, body, create)
 
 
 @router.get(

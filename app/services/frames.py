@@ -13,7 +13,7 @@ from app.errors import ProblemError, invalid_request
 from app.schemas.frames import FrameRegistrationRequest, FrameRequest, PointPairBody
 from app.services.sent_frames import BASE_FRAME
 from app.services.wire import present
-from app.store import FramesFull, FrameStore, StoredFrame
+from app.store import FramesFull, FrameStore, NewKey, StoredFrame
 from hardware.clock import instant_text
 from hardware.instances import instance_names, load_instance
 from solver import Fault, Robot, UnknownRobot
@@ -64,17 +64,20 @@ class FrameService:
             warnings = (*warnings, *agreement.warnings)
         return self._keep(_Frame(name, GIVEN, pose, warnings, agreement))
 
-    def register(self, name: str, request: FrameRegistrationRequest) -> StoredFrame:
+    def register(
+        self, name: str, request: FrameRegistrationRequest, key: NewKey | None = None
+    ) -> StoredFrame:
         """Estimate a pose from pairs of points and register it, in place of what had the name.
 
         Raises:
             InvalidProblem: pairs from which no pose follows; no robot of that name.
+            KeyTaken: something was created under the key before.
             ProblemError: 422, the name is none; 409, there are too many frames.
         """
         _check_name(name)
         agreement = register(_pairs(request.pairs), reach_m=_reach_m(request.robot))
         pose = agreement.base_from_frame
-        return self._keep(_Frame(name, ESTIMATED, pose, agreement.warnings, agreement))
+        return self._keep(_Frame(name, ESTIMATED, pose, agreement.warnings, agreement), key)
 
     def document(self, name: str) -> str:
         """A frame's JSON.
@@ -114,10 +117,13 @@ class FrameService:
     def _find(self, name: str) -> str | None:
         return self._store.document(name) if NAME.fullmatch(name) else None
 
-    def _keep(self, frame: _Frame) -> StoredFrame:
+    def _keep(self, frame: _Frame, key: NewKey | None = None) -> StoredFrame:
         try:
             return self._store.put(
-                frame.name, lambda created_at, updated_at: _json(frame, created_at, updated_at)
+                frame.name,
+                lambda created_at, updated_at: _json(frame, created_at, updated_at),
+                key,
+                location_of(frame.name),
             )
         except FramesFull:
             detail = "There are as many frames as are kept; delete some."

@@ -185,11 +185,8 @@ class SolvingService:
         return answer
 
     async def _solve(self, problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
-        if (
-            self._workers == 1
-            or len(problem.targets) < SHARED_TARGETS
-            or not plans_together(problem)
-        ):
+        shared = self._workers > 1 and len(problem.targets) >= SHARED_TARGETS
+        if not (shared and plans_together(problem)):
             return await self._run(lambda pool: pool.submit(solve_to_json, problem, plan_id))
         size = -(-len(problem.targets) // self._workers)
         shares = [

@@ -8,6 +8,7 @@ from sqlalchemy import Engine, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from app.store.database import writing
+from app.store.idempotency import NewKey, insert_key, new_entry
 from app.store.instants import utc
 from app.store.tables import FRAMES
 
@@ -38,29 +39,45 @@ class FrameStore:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
 
-    def put(self, name: str, document: Callable[[datetime, datetime], str]) -> StoredFrame:
+    def put(
+        self,
+        name: str,
+        document: Callable[[datetime, datetime], str],
+        key: NewKey | None = None,
+        location: str = "",
+    ) -> StoredFrame:
         """Store a frame in place of what had its name; it is durable when this returns.
 
         Args:
             name: of the frame.
             document: makes the JSON from when the name was created and when this was stored, UTC.
+            key: that it was asked for under, stored with it; the answer is 201 with the document.
+            location: of the frame, for that answer.
 
         Raises:
+            KeyTaken: something was created under the key before; nothing was stored.
             FramesFull: the name is new, and there are too many.
         """
         try:
-            return self._put(name, document)
+            return self._put(name, document, key, location)
         except IntegrityError:
             # Somebody else was first to add it, so this time it is there to be replaced.
-            return self._put(name, document)
+            return self._put(name, document, key, location)
 
-    def _put(self, name: str, document: Callable[[datetime, datetime], str]) -> StoredFrame:
+    def _put(
+        self,
+        name: str,
+        document: Callable[[datetime, datetime], str],
+        key: NewKey | None,
+        location: str,
+    ) -> StoredFrame:
         now = datetime.now(UTC)
         there = select(FRAMES.c.created_at).where(FRAMES.c.name == name).with_for_update()
         with writing(self._engine).begin() as connection:
             created_at = connection.execute(there).scalar_one_or_none()
             if created_at is not None:
                 text = document(utc(created_at), now)
+                insert_key(connection, new_entry(key, 201, location, text))
                 changes = update(FRAMES).where(FRAMES.c.name == name)
                 connection.execute(changes.values(updated_at=now, document=text))
                 return StoredFrame(text, is_new=False)
@@ -68,6 +85,7 @@ class FrameStore:
             if count >= MOST_FRAMES:
                 raise FramesFull
             text = document(now, now)
+            insert_key(connection, new_entry(key, 201, location, text))
             row = {"name": name, "created_at": now, "updated_at": now, "document": text}
             connection.execute(insert(FRAMES), row)
             return StoredFrame(text, is_new=True)

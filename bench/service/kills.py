@@ -1,0 +1,185 @@
+"""`python -m bench.service.kills [--rounds N] [--database sqlite|URL]`: kill -9 under load.
+
+Clients post plans, jobs and executions, each with a key, and repeat a request until it is answered.
+Meanwhile the service and its solver processes are killed at random moments and started again. Then
+every answer is asked for again, and the rows and the worker's journal are counted. Prints a JSON
+object; the exit code is 1 if anything was lost, or done twice. The database must be empty.
+"""
+
+import argparse
+import json
+import random
+import sys
+import tempfile
+import threading
+import time
+from collections import Counter
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, create_engine, inspect, make_url
+
+from app.processes import own_process
+from bench.service.kill_checks import (
+    Parts,
+    changed_parts,
+    check_answers,
+    check_jobs,
+    check_rows,
+    check_worker,
+    stored_parts,
+)
+from bench.service.kill_load import (
+    ROBOT,
+    Account,
+    ExecutionClient,
+    JobClient,
+    LoadClient,
+    NeverGivingUp,
+)
+from bench.service.killed_service import KilledService
+
+SQLITE = "sqlite"
+# Of the moments of death: this share before the service listens, the others under load.
+EARLY_SHARE = 0.2
+EARLY_S = 2.0
+LATE_S = 3.0
+TIME_FACTOR = "8"
+FIRST_LINE_S = 60.0
+JOIN_S = 1800.0
+PLAN_CLIENTS = 3
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is tried.
+
+    Attributes:
+        rounds: how often the service is killed.
+        database_url: an SQLAlchemy URL; empty: SQLite in the folder.
+        folder: of everything that is written.
+    """
+
+    rounds: int
+    database_url: str
+    folder: Path
+    seed: int = 0
+
+
+class DatabaseNotEmpty(Exception):
+    """The database has tables already; rows of others cannot be told from rows too many."""
+
+
+def kill_rounds(trial: Trial) -> dict[str, Any]:
+    """The report: what was answered, and `violations`, which is empty if all is well.
+
+    Raises:
+        DatabaseNotEmpty: it has tables.
+        ServiceDied: the service ended by itself.
+    """
+    url = trial.database_url or f"sqlite:///{trial.folder / 'data' / 'prunus.sqlite3'}"
+    engine = create_engine(make_url(url))
+    if trial.database_url and inspect(engine).get_table_names():
+        raise DatabaseNotEmpty(make_url(url).render_as_string(hide_password=True))
+    service = KilledService(trial.folder, trial.database_url)
+    account, stopping = Account(), threading.Event()
+    shared = (service.url, trial.seed, account, stopping)
+    clients = [LoadClient(f"plans {number}", *shared) for number in range(PLAN_CLIENTS)]
+    clients += [JobClient("jobs", *shared), ExecutionClient("executions", *shared)]
+    started = time.monotonic()
+    with ExitStack() as stack:
+        stack.callback(engine.dispose)
+        stack.callback(stopping.set)
+        stack.callback(service.kill)
+        service.start()
+        # Or every life would compile kernels, and none would get to solving.
+        service.wait_until_ready()
+        _start_arm(stack, service.url, trial.folder)
+        for client in clients:
+            client.start()
+        violations, early = _deaths(trial, service, engine)
+        service.start()
+        service.wait_until_healthy()
+        stopping.set()
+        for client in clients:
+            client.join(JOIN_S)
+            if client.is_alive():
+                violations.append(f"the client of {client.name} is still waiting")
+        caller = NeverGivingUp(service.url)
+        stack.callback(caller.close)
+        answered = list(account.answered)
+        violations += account.unexpected
+        violations += check_jobs(caller, answered)
+        violations += check_answers(caller, answered)
+        violations += check_rows(engine, answered)
+        of_worker, begun = check_worker(trial.folder, engine)
+        violations += of_worker
+        parts = len(stored_parts(engine))
+    return {
+        "database": make_url(url).get_backend_name(),
+        "rounds": trial.rounds,
+        "seed": trial.seed,
+        "killed_before_listening": early,
+        "answered": dict(Counter(one.kind for one in answered)),
+        "sent_again": sum(one.attempts > 1 for one in answered),
+        "answers_lost_and_replayed": sum(one.replayed for one in answered),
+        "job_parts": parts,
+        "executions_begun": begun,
+        "elapsed_s": round(time.monotonic() - started, 1),
+        "violations": violations,
+    }
+
+
+def _start_arm(stack: ExitStack, url: str, folder: Path) -> None:
+    bus = stack.enter_context(own_process("servo-bus", "--time-factor", TIME_FACTOR))
+    device = bus.first_line(FIRST_LINE_S)
+    record = folder / "laser.txt"
+    stack.enter_context(
+        own_process(
+            "worker", "--url", url, "--robot", ROBOT, "--port", device,
+            "--data-dir", str(folder), "--time-factor", TIME_FACTOR,
+            "--end-effector", "simulated", "--end-effector-record", str(record),
+        )
+    )  # fmt: skip
+
+
+def _deaths(trial: Trial, service: KilledService, engine: Engine) -> tuple[list[str], int]:
+    """Kill and start again; what was wrong with the parts of jobs, and deaths before listening."""
+    moments = random.Random(trial.seed)
+    found: list[str] = []
+    parts: Parts = {}
+    early = 0
+    for number in range(trial.rounds):
+        if number:
+            service.start()
+        if number and moments.random() < EARLY_SHARE:
+            early += 1
+            time.sleep(moments.uniform(0, EARLY_S))
+        else:
+            service.wait_until_healthy()
+            time.sleep(moments.uniform(0, LATE_S))
+        service.kill()
+        now = stored_parts(engine)
+        found += changed_parts(parts, now)
+        parts = now
+    return found, early
+
+
+def main() -> int:
+    """Runs the rounds and prints the report."""
+    parser = argparse.ArgumentParser(prog="bench.service.kills", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=100)
+    parser.add_argument("--database", default=SQLITE, help=f"{SQLITE}, or an SQLAlchemy URL")
+    parser.add_argument("--seed", type=int, default=0)
+    arguments = parser.parse_args()
+    url = "" if arguments.database == SQLITE else arguments.database
+    with tempfile.TemporaryDirectory(prefix="prunus-kills-") as folder:
+        report = kill_rounds(Trial(arguments.rounds, url, Path(folder), arguments.seed))
+    print(json.dumps(report, indent=2))
+    return 1 if report["violations"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
