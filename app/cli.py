@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from app.backup_command import backup
 from app.compare_command import compare
 from app.refusals import fail
 from app.robot_commands import robot_commands
@@ -19,6 +20,7 @@ cli = typer.Typer(
 )
 cli.add_typer(robot_commands, name="robot")
 cli.command()(compare)
+cli.command()(backup)
 
 
 def main() -> None:

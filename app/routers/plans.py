@@ -13,6 +13,7 @@ from app.routers.common import body_of, json_body, problem_answers
 from app.schemas.answers import PlanAnswer
 from app.schemas.requests import PlanRequest
 from app.services.solving import SolvingService
+from app.services.store_calls import store_call
 from app.services.wire import parse_request, problem_from_wire
 from app.store import PlanStore
 from solver import Fault, Problem
@@ -45,7 +46,7 @@ async def create_plan(request: Request) -> Response:
     solving: SolvingService = request.app.state.solving
     answer = await solving.solve(problem, plan_id)
     store: PlanStore = request.app.state.store
-    await run_in_threadpool(
+    await store_call(
         store.add, plan_id, robot=problem.robot.name, request=normalised, answer=answer.decode()
     )
     return Response(
@@ -80,7 +81,7 @@ def _read(body: bytes, targets_limit: int) -> tuple[Problem, str]:
 async def get_plan(plan_id: str, request: Request) -> Response:
     """As it was answered, byte for byte."""
     store: PlanStore = request.app.state.store
-    answer = await run_in_threadpool(store.answer, plan_id)
+    answer = await store_call(store.answer, plan_id)
     if answer is None:
         raise ProblemError(404, "not_found", "There is no plan of this id.")
     headers = {"Vary": "Accept"}
