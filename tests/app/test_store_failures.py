@@ -14,7 +14,8 @@ from sqlalchemy import make_url
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.settings import Settings
-from app.store import ExecutionStore, PlanStore, open_engine, postgresql
+from app.store import ExecutionStore, PlanStore, open_engine
+from app.store import postgresql as postgresql_connections
 from app.store.failures import StoreFailure, failure_of
 from tests.app.conftest import REPOSITORY, assert_problem, running_server, wait_until
 from tests.postgresql import PostgresqlServer
@@ -104,23 +105,19 @@ def test_a_hung_server_is_given_up(
         )
     ]
     assert backends
-    monkeypatch.setattr(postgresql_module, "ANSWER_S", 0.5)
+    monkeypatch.setattr(postgresql_connections, "ANSWER_S", 0.5)
     try:
         for pid in backends:
             os.kill(pid, signal.SIGSTOP)
-        with pytest.raises(SQLAlchemyError) as raised:
-            # The pool's ping would only make a new connection.
-            with engine.connect() as connection:
-                connection.exec_driver_sql("SELECT pg_sleep(60)")
+        # The stopped connection is given up by the pool's ping, the new one over its statement.
+        with pytest.raises(SQLAlchemyError) as raised, engine.connect() as connection:
+            connection.exec_driver_sql("SELECT pg_sleep(60)")
         assert failure_of(raised.value) is StoreFailure.UNAVAILABLE
     finally:
         for pid in backends:
             os.kill(pid, signal.SIGCONT)
     store.check()
     engine.dispose()
-
-
-postgresql_module = postgresql
 
 
 def test_postgresql_urls_take_the_driver_that_is_installed(postgresql_url: str) -> None:
