@@ -200,8 +200,12 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         )
         document["components"]["schemas"].update(definitions["$defs"])
     refused = problem_answers(403)  # by the guard in front of every route
-    for path in document["paths"].values():
+    failed = problem_answers(503, 507)  # by the database, behind almost all
+    for route, path in document["paths"].items():
         for operation in path.values():
+            if route.startswith("/v1/"):
+                missing = failed.keys() - {int(code) for code in operation["responses"]}
+                operation["responses"] |= {str(code): failed[code] for code in sorted(missing)}
             # FastAPI's own form of a validation error, which is never sent.
             _drop_stock_validation_error(operation["responses"])
             operation["responses"] |= {str(code): what for code, what in refused.items()}

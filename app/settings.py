@@ -100,7 +100,10 @@ class Settings(BaseSettings):
     def resolved_database_url(self) -> URL:
         """The database's URL with the default filled in."""
         if self.database_url:
-            return make_url(self.database_url)
+            url = make_url(self.database_url)
+            # What PostgreSQL's own tools call it; without a driver SQLAlchemy takes another one.
+            postgresql = url.drivername in ("postgresql", "postgres")
+            return url.set(drivername="postgresql+psycopg") if postgresql else url
         return URL.create("sqlite", database=str(self.data_dir.resolve() / "prunus.sqlite3"))
 
 

@@ -1,7 +1,6 @@
 """Executions: plans on their way through a robot."""
 
 from fastapi import APIRouter, Query, Request, Response
-from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, lease_of, problem_answers
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
@@ -13,6 +12,7 @@ from app.schemas.executions import (
 )
 from app.services.execution_record import Execution, execution_to_json
 from app.services.executions import ExecutionService
+from app.services.store_calls import store_call
 from app.store import ExecutionRow, ExecutionStore, NewKey
 from hardware.clock import instant_text
 
@@ -64,7 +64,7 @@ async def list_executions(
 ) -> Response:
     """Without their targets."""
     store: ExecutionStore = request.app.state.execution_store
-    rows = await run_in_threadpool(store.newest, robot)
+    rows = await store_call(store.newest, robot)
     answer = ExecutionsAnswer(executions=[_summary(row) for row in rows])
     return Response(answer.model_dump_json(), media_type="application/json")
 

@@ -7,13 +7,14 @@ from typing import Any, Final
 import orjson
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
-from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
+from starlette.concurrency import iterate_in_threadpool
 
 from app.routers.common import NDJSON, problem_answers, wants_lines
 from app.schemas.jobs import JobAnswer, JobResultsAnswer, JobsAnswer
 from app.services.jobs import JobService
 from app.services.parts import joined_arrays
 from app.services.plan_reading import lines_of
+from app.services.store_calls import store_call
 from app.services.wire import present
 from app.store import JobRow, PlanStore
 from hardware.clock import instant_text
@@ -136,7 +137,7 @@ async def _following(
     while True:
         # Looked at before the parts: a job that has ended gets no more of them.
         ended = job is not None and not job.active
-        while (part := await run_in_threadpool(store.part, job_id, number)) is not None:
+        while (part := await store_call(store.part, job_id, number)) is not None:
             yield lines_of(orjson.loads(part))
             number += 1
         if ended:

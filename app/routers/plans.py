@@ -20,6 +20,7 @@ from app.services.jobs import JobService
 from app.services.plan_reading import plan_chunks, plan_lines
 from app.services.sent_frames import FindFrame, stored_request
 from app.services.solving import SolvingService
+from app.services.store_calls import store_call
 from app.services.wire import parse_request, problem_from_wire
 from app.settings import Settings
 from app.store import NewKey, PlanStore, new_entry
@@ -84,7 +85,7 @@ async def _create(request: Request, body: bytes, key: NewKey | None) -> Response
     location = f"/v1/plans/{plan_id}"
     solving: SolvingService = request.app.state.solving
     answer = await solving.solve(problem, plan_id)
-    await run_in_threadpool(
+    await store_call(
         _store(request).add,
         plan_id,
         robot=problem.robot.name,
@@ -146,7 +147,7 @@ def _stored_answer(request: Request, plan_id: str) -> str | None:
 async def get_plan(plan_id: str, request: Request) -> Response:
     """As it was answered, byte for byte."""
     store = _store(request)
-    plan = await run_in_threadpool(store.plan, plan_id)
+    plan = await store_call(store.plan, plan_id)
     if plan is None:
         raise ProblemError(404, "not_found", "There is no plan of this id.")
     headers = {"Vary": "Accept"}

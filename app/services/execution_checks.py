@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import orjson
-from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError, invalid_request
 from app.services.execution_record import Execution, targets_of_plan
 from app.services.links import Link
 from app.services.plan_reading import whole_answer
+from app.services.store_calls import store_call
 from app.store import PlanStore
 from hardware.instances import RobotInstance, load_instance
 from hardware.messages import TargetAccount
@@ -44,7 +44,7 @@ async def ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPla
     Raises:
         ProblemError: no such plan or robot, or no target of the plan can be approached.
     """
-    return await run_in_threadpool(_ordered_plan, plans, plan_id, robot)
+    return await store_call(_ordered_plan, plans, plan_id, robot)
 
 
 def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:

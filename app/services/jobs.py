@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from sqlalchemy.exc import SQLAlchemyError
-from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
 from app.services.job_process import JobProcess
 from app.services.measures import Measures
 from app.services.solving import LogOptions, SolverLost
+from app.services.store_calls import store_call
 from app.store import JobEnded, JobRow, JobStore, NewKey, new_entry
 from app.store.jobs import CANCELED, FAILED
 from solver import Problem
@@ -79,7 +79,7 @@ class JobService:
 
     async def start(self) -> None:
         """Take up what an earlier run of the service left, and begin to work."""
-        for job_id in await run_in_threadpool(self._store.active):
+        for job_id in await store_call(self._store.active):
             self._enqueue(job_id)
         for _ in range(self._workers):
             self._tasks.append(asyncio.create_task(self._work(JobProcess(self._logs))))
@@ -118,7 +118,7 @@ class JobService:
         # The place is taken before the job is stored, so that a burst does not overrun the limit.
         self._active[job_id] = _Active()
         try:
-            job = await run_in_threadpool(
+            job = await store_call(
                 self._store.add,
                 job_id,
                 robot=problem.robot.name,
@@ -138,14 +138,14 @@ class JobService:
         Raises:
             ProblemError: 404, there is none of this id.
         """
-        job = await run_in_threadpool(self._store.job, job_id)
+        job = await store_call(self._store.job, job_id)
         if job is None:
             raise ProblemError(404, "not_found", "There is no job of this id.")
         return job
 
     async def newest(self) -> list[JobRow]:
         """The newest ones, newest first."""
-        return await run_in_threadpool(self._store.newest)
+        return await store_call(self._store.newest)
 
     async def cancel(self, job_id: str) -> JobRow:
         """End a job at once, whatever it does; what is solved stays.
@@ -155,7 +155,7 @@ class JobService:
         """
         job = await self.job(job_id)
         try:
-            await run_in_threadpool(self._store.end, job_id, CANCELED)
+            await store_call(self._store.end, job_id, CANCELED)
         except JobEnded:
             detail = f"The job is {(await self.job(job_id)).status}; this needs an active one."
             raise ProblemError(409, "wrong_state", detail) from None
@@ -248,24 +248,24 @@ class JobService:
                 return
 
     async def _solve(self, job_id: str, active: _Active, process: JobProcess) -> None:
-        await run_in_threadpool(self._store.start, job_id)
+        await store_call(self._store.start, job_id)
         active.tell()
-        work = await run_in_threadpool(self._store.work, job_id)
+        work = await store_call(self._store.work, job_id)
         choice = await process.load(job_id, work)
         if work.choice is None:
-            await run_in_threadpool(self._store.save_choice, job_id, choice)
+            await store_call(self._store.save_choice, job_id, choice)
         job = await self.job(job_id)
         number, first, reference = work.parts, work.done, work.reference
         while first < job.targets:
             part, figures = await process.part(job_id, number, first, reference)
-            await run_in_threadpool(self._store.add_part, job_id, part)
+            await store_call(self._store.add_part, job_id, part)
             self._measures.solved(figures)
             logger.info("job part stored", extra={"job_id": job_id, "part": number})
             number, first, reference = number + 1, first + figures.targets, part.reference
             active.tell()
         job = await self.job(job_id)
         answer = await process.head(job)
-        await run_in_threadpool(
+        await store_call(
             self._store.complete, job_id, robot=job.robot, request=work.request, answer=answer
         )
         logger.info("job completed", extra={"job_id": job_id})
@@ -273,7 +273,7 @@ class JobService:
     async def _fail(self, job_id: str, detail: str) -> None:
         while True:
             try:
-                await run_in_threadpool(self._store.end, job_id, FAILED, detail)
+                await store_call(self._store.end, job_id, FAILED, detail)
             except SQLAlchemyError:
                 logger.exception("the store failed job", extra={"job_id": job_id})
                 await asyncio.sleep(STORE_RETRY_S)

@@ -110,6 +110,8 @@ class ExecutionStore:
 
     def newest(self, robot: str = "") -> list[ExecutionRow]:
         """The newest ones, newest first: of a robot, or of all."""
+        if "\0" in robot:
+            return []  # no robot's name has one, and PostgreSQL would refuse the question
         columns = [EXECUTIONS.c[name] for name in ExecutionRow.__dataclass_fields__]
         query = select(*columns).order_by(EXECUTIONS.c.created_at.desc(), EXECUTIONS.c.id)
         if robot:
