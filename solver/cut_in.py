@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.approach.between_rows import may_leave_between
-from solver.approach.feasibility import retreat_from
+from solver.approach.feasibility import retreat_from, retreat_from_many
 from solver.approach.task import ApproachTask
 from solver.kinematics.families import rail_of
-from solver.kinematics.forward import forward_kinematics, tool_centres
+from solver.kinematics.forward import forward_kinematics, many_poses, tool_centres
 from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.methods.candidate import Candidate
@@ -137,6 +138,30 @@ def refined_rows(
             break
         count = 2 * count - 1
     return rows, float(deviation)
+
+
+def many_retreat_rows(
+    robot: Robot, tool: Tool, thinning: Array, branches: NDArray[np.int64], retreats: Array
+) -> Array:
+    """`retreat_rows` of n thinning postures of an arm that is not on a rail.
+
+    Args:
+        robot: an arm with a spherical wrist.
+        tool: its tool.
+        thinning: postures at the targets, shape (n, 6) [rad].
+        branches: inverse kinematics branches, shape (n,).
+        retreats: distances behind the targets, descending to 0, shape (rows,) [m].
+
+    Returns:
+        Shape (n, rows, 6).
+    """
+    paths = np.empty((len(thinning), len(retreats), 6))
+    paths[:, -1] = thinning
+    poses = inverse(robot.mount) @ many_poses(robot, tool, thinning)
+    retreat_from_many(
+        wrist_geometry(robot, tool), np.ascontiguousarray(poses), branches, retreats, paths
+    )
+    return paths
 
 
 def line_deviation(robot: Robot, tool: Tool, rows: Array, point: Array, direction: Array) -> float:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from solver.approach.frame import approach_frames
 from solver.approach.robustness import displacement_margins
-from solver.cut_in import line_deviations
+from solver.cut_in import line_deviations, many_retreat_rows
 from solver.path_verification import (
     ClaimedPaths,
     branch_residuals,
@@ -24,11 +24,12 @@ from solver.path_verification import (
 from solver.problem import Problem
 from solver.robots.model import Array
 from solver.solution import PLANNED, Approach, SolverReport
+from solver.tolerances import TRAJECTORY_HALVINGS
 
 
 @dataclass(frozen=True)
 class ProposedPaths:
-    """Approaches to n exact targets of a problem, all from its start posture.
+    """Approaches to n exact targets of a problem.
 
     Attributes:
         target_ids: whose.
@@ -38,6 +39,7 @@ class ProposedPaths:
         tool_sides: 1 or -1, shape (n,).
         branches: 0 to 7, shape (n,).
         paths: the cut-ins, standby first, shape (n, path_points, 6) [rad].
+        references: postures from which efforts count, shape (n, 6) [rad].
     """
 
     target_ids: Sequence[str]
@@ -47,6 +49,7 @@ class ProposedPaths:
     tool_sides: NDArray[np.int64]
     branches: NDArray[np.int64]
     paths: Array
+    references: Array
 
 
 def judge_many(
@@ -62,10 +65,9 @@ def judge_many(
     if not proposed.target_ids:
         return {}
     robot, tool, options = problem.robot, problem.mounted_tool, problem.options
-    claimed, start = _claimed(proposed), np.asarray(problem.start)
+    claimed = _claimed(proposed)
     standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
-    deviations = line_deviations(robot, tool, claimed.paths, claimed.places, claimed.axes[..., 2])
-    margins = robot.limit_margin(claimed.paths).min(axis=1)
+    deviations, margins = _as_executed(problem, proposed.branches, claimed)
     residuals = (
         *path_residuals(problem, claimed, standby, thinning),
         *branch_residuals(problem, claimed, proposed.branches),
@@ -75,7 +77,7 @@ def judge_many(
     accepted = np.logical_and.reduce([residual.accepted for residual in residuals])
     accepted &= np.isin(proposed.tool_sides, (1, -1) if options.symmetric_tool else (1,))
     room = displacement_margins(robot, tool, options, proposed.branches, claimed.paths)
-    efforts = efforts_between(problem, thinning, start)
+    efforts = efforts_between(problem, thinning, proposed.references)
     columns = zip(
         proposed.target_ids,
         reports,
@@ -112,6 +114,33 @@ def judge_many(
         ) in columns
         if holds
     }  # fmt: skip
+
+
+def _as_executed(
+    problem: Problem, branches: NDArray[np.int64], claimed: ClaimedPaths
+) -> tuple[Array, Array]:
+    """How far motion leaves the lines [m], and its distance to a limit [rad], shape (n,) each.
+
+    Motion goes through the rows, or where those are not straight enough through finer ones.
+    """
+    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
+    deviations = line_deviations(robot, tool, claimed.paths, claimed.places, claimed.axes[..., 2])
+    margins = robot.limit_margin(claimed.paths).min(axis=1)
+    count = options.path_points
+    for _ in range(TRAJECTORY_HALVINGS):
+        bent = np.flatnonzero(deviations > options.straightness_m)
+        if not len(bent):
+            break
+        count = 2 * count - 1
+        retreats = np.linspace(options.standoff_m, 0.0, count)
+        rows = many_retreat_rows(robot, tool, claimed.paths[bent, -1], branches[bent], retreats)
+        lines = claimed.places[bent], claimed.axes[bent, :, 2]
+        deviations[bent] = line_deviations(robot, tool, rows, *lines)
+        margins[bent] = np.minimum(
+            robot.limit_margin(claimed.paths[bent]).min(axis=1),
+            robot.limit_margin(rows).min(axis=1),
+        )
+    return deviations, margins
 
 
 def _claimed(proposed: ProposedPaths) -> ClaimedPaths:

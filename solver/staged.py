@@ -12,10 +12,10 @@ from typing import Any
 from solver.approach.arcs import Arc
 from solver.approach.task import approach_task
 from solver.kinematics.families import has_closed_form
-from solver.many_targets import plan_many, plans_together
+from solver.many_targets import plan_many, plan_stops, plans_together
 from solver.methods.candidate import Candidate
 from solver.one_target import plan_target
-from solver.problem import Problem
+from solver.problem import Problem, Target
 from solver.registry import METHODS
 from solver.sequencing.sequence import Stop, sequence
 from solver.solution import PLANNED, Approach
@@ -65,11 +65,12 @@ def plan_part(
     """
     part = range(first, min(first + count, len(choice.order)))
     targets = [problem.targets_by_id[choice.order[place]] for place in part]
-    together = plan_many(problem, targets) if plans_together(problem) else {}
+    together = _together(problem, choice, targets, reference)
     approaches: list[Approach] = []
     for place, target in zip(part, targets, strict=True):
         if target.id in together:
             approaches.append(together[target.id])
+            reference = next_reference(problem, approaches[-1:], reference)
             continue
         stop = choice.stops.get(target.id)
         following = None if stop is None else _next_stop(choice, place)
@@ -130,6 +131,18 @@ def choice_from_json(problem: Problem, text: str) -> Choice:
         )
 
     return Choice(tuple(read["order"]), {entry["id"]: stop(entry) for entry in read["stops"]})
+
+
+def _together(
+    problem: Problem, choice: Choice, targets: Sequence[Target], reference: Sequence[float]
+) -> dict[str, Approach]:
+    """What can be planned without going from target to target, by target id."""
+    if not plans_together(problem):
+        return {}
+    if problem.options.order == "independent":
+        return plan_many(problem, targets)
+    stops = [choice.stops[target.id] for target in targets if target.id in choice.stops]
+    return plan_stops(problem, stops, reference)
 
 
 def _as_one(problem: Problem) -> bool:

@@ -185,8 +185,9 @@ class SolvingService:
         return answer
 
     async def _solve(self, problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
+        independent = problem.options.order == "independent" and plans_together(problem)
         shared = self._workers > 1 and len(problem.targets) >= SHARED_TARGETS
-        if not (shared and plans_together(problem)):
+        if not (shared and independent):
             return await self._run(lambda pool: pool.submit(solve_to_json, problem, plan_id))
         size = -(-len(problem.targets) // self._workers)
         shares = [

@@ -156,6 +156,13 @@ def retreat_from(geometry, pose, branch, retreats, rows):
 
 
 @kernel
+def retreat_from_many(geometry, poses, branches, retreats, paths):
+    """`retreat_from` for n poses; `paths` is shape (n, len(retreats), 6)."""
+    for k in range(len(paths)):
+        retreat_from(geometry, poses[k], branches[k], retreats, paths[k])
+
+
+@kernel
 def effort(task, q):
     """Weighted joint travel from the reference to q (T's minimum effort; squared for l2)."""
     total = 0.0

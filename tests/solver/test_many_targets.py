@@ -5,10 +5,11 @@ import pytest
 
 from solver import Options, Problem, Robot, Target, load_robot, many_targets, verify
 from solver.comparison.targets import as_targets, drawn_at_edges
-from solver.many_targets import plan_many, plans_together
+from solver.many_targets import plan_many, plan_stops, plans_together
 from solver.many_verification import judge_many
 from solver.one_target import plan_target
 from solver.solution import PLANNED
+from solver.staged import choose, next_reference
 from tests.solver.problems import random_targets
 
 SAME = 1e-9
@@ -68,7 +69,6 @@ def test_together_is_as_one_by_one(name: str, symmetric: bool, norm: str) -> Non
     "changes",
     [
         {"method": "ncos"},
-        {"order": "given"},
         {"include": ("path", "transfer")},
         {"include": ("path", "arcs")},
         {"certify": True},
@@ -79,6 +79,37 @@ def test_what_needs_more_goes_one_by_one(tabletop: Robot, changes: dict[str, obj
     options = {"method": "ssas", "order": "independent", "include": ("path",), **changes}
     problem = Problem(tabletop, random_targets(seed=90, count=3), options=Options(**options))  # type: ignore[arg-type]
     assert not plans_together(problem)
+
+
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_a_chain_together_is_as_one_by_one(tabletop: Robot, symmetric: bool) -> None:
+    options = Options(method="ssas", symmetric_tool=symmetric, include=("path",))
+    problem = Problem(tabletop, random_targets(seed=93, count=40), options=options)
+    choice = choose(problem)
+    stops = [choice.stops[id] for id in choice.order if id in choice.stops]
+    together = plan_stops(problem, stops, problem.start)
+    assert len(together) == len(stops) > 15
+    reference = problem.start
+    for stop in stops:
+        alone = plan_target(problem, stop.task.target, reference, stop)
+        found = together[stop.task.target.id]
+        assert verify(problem, found, reference).accepted
+        assert found.effort == pytest.approx(alone.effort, abs=SAME)
+        assert (found.branch, found.tool_side) == (alone.branch, alone.tool_side)
+        assert found.approach_angle_rad == alone.approach_angle_rad
+        reference = next_reference(problem, (found,), reference)
+
+
+def test_a_chain_ends_where_one_fails(tabletop: Robot) -> None:
+    options = Options(method="ssas", include=("path",))
+    problem = Problem(tabletop, random_targets(seed=93, count=40), options=options)
+    choice = choose(problem)
+    stops = [choice.stops[id] for id in choice.order if id in choice.stops]
+    wrong = replace(stops[5], angle_rad=stops[5].angle_rad + 0.01)
+    broken = [*stops[:5], wrong, *stops[6:]]
+    assert list(plan_stops(problem, broken, problem.start)) == [
+        stop.task.target.id for stop in stops[:5]
+    ]
 
 
 def test_rail_goes_one_by_one_and_uncertain_targets_are_left_out(tabletop: Robot) -> None:
