@@ -100,7 +100,7 @@ def fuzz(
     return fuzzed
 
 
-def only_expected_503(_: CheckContext, response: Response, case: Case) -> None:
+def only_expected_503(_: CheckContext, response: Response, case: Case[Any]) -> None:
     """A check of Schemathesis: a 503 is a problem with one of the codes in `EXPECTED_503`."""
     if response.status_code != 503:
         return
