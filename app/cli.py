@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from app.backup_command import backup
 from app.compare_command import compare
 from app.refusals import fail
 from app.robot_commands import robot_commands
@@ -25,6 +26,7 @@ cli.add_typer(robot_commands, name="robot")
 cli.add_typer(token_commands, name="token")
 cli.command()(compare)
 cli.command(name="settings")(settings_command)
+cli.command()(backup)
 
 
 def main() -> None:

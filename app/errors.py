@@ -1,18 +1,24 @@
 """Errors as RFC 9457 problem details. What a client sent is never sent back."""
 
 import http
+import logging
 from collections.abc import Mapping, Sequence
 
 import orjson
 from fastapi import FastAPI, Request, Response
 from pydantic import ValidationError
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from app.schemas.problem_details import MEDIA_TYPE
+from app.store.failures import StoreFailure, cause_of, failure_of
 from solver import Fault, InvalidProblem
 
+logger = logging.getLogger(__name__)
+
 MOST_FAULTS = 100
+STORE_RETRY_S = 5
 LONGEST_STEP = 100
 
 
@@ -54,6 +60,18 @@ def structural_faults(error: ValidationError) -> tuple[Fault, ...]:
         return (Fault((), f"has {error.error_count()} fields that are not what they must be"),)
     entries = error.errors(include_url=False, include_input=False, include_context=False)
     return tuple(Fault(_clipped(entry["loc"]), entry["msg"]) for entry in entries)
+
+
+def store_problem(error: SQLAlchemyError) -> ProblemError | None:
+    """The problem for a database that failed, or None if that is a defect of ours."""
+    failure = failure_of(error)
+    if failure is StoreFailure.FULL:
+        detail = "The storage is full; nothing was stored."
+        return ProblemError(507, "storage_full", detail)
+    if failure is StoreFailure.UNAVAILABLE:
+        detail = "The database does not answer now; try again."
+        return ProblemError(503, "store_unavailable", detail, retry_after_s=STORE_RETRY_S)
+    return None
 
 
 def _clipped(path: Sequence[str | int]) -> tuple[str | int, ...]:
@@ -111,6 +129,14 @@ def install_error_handlers(app: FastAPI) -> None:
         return problem_response(
             error.status, error.code, error.detail, faults=error.faults, headers=headers
         )
+
+    @app.exception_handler(SQLAlchemyError)
+    async def store(request: Request, error: SQLAlchemyError) -> Response:
+        problem = store_problem(error)
+        if problem is None:
+            raise error
+        logger.warning("%s: %s", problem.code, cause_of(error))
+        return await expected(request, problem)
 
     @app.exception_handler(InvalidProblem)
     async def invalid(_: Request, error: InvalidProblem) -> Response:

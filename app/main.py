@@ -26,6 +26,7 @@ from app.routers import (
     executions,
     frames,
     health,
+    jobs,
     leases,
     link,
     metrics,
@@ -48,6 +49,7 @@ from app.services.comparisons import ComparisonService
 from app.services.executions import ExecutionService
 from app.services.frames import FrameService
 from app.services.idempotency import IdempotencyService
+from app.services.jobs import JobService
 from app.services.leases import LeaseService
 from app.services.links import LinkService
 from app.services.solving import LogOptions, SolvingService
@@ -57,6 +59,7 @@ from app.store import (
     ExecutionStore,
     FrameStore,
     IdempotencyStore,
+    JobStore,
     PlanStore,
     TokenStore,
     open_engine,
@@ -109,6 +112,7 @@ def create_app(settings: Settings) -> FastAPI:
     install_error_handlers(app)
     for module in (
         plans,
+        jobs,
         executions,
         comparisons,
         frames,
@@ -149,6 +153,14 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         state.metrics,
         LogOptions(settings.log_format, settings.log_level),
     )
+    state.jobs = JobService(
+        JobStore(engine),
+        workers=settings.job_workers,
+        most_waiting=settings.most_waiting_jobs,
+        logs=LogOptions(settings.log_format, settings.log_level),
+        measures=state.metrics,
+        stopping=state.stopping,
+    )
     state.executions = ExecutionService(
         state.execution_store, state.store, state.solving, state.links, state.leases
     )
@@ -156,10 +168,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     try:
         await state.executions.end_interrupted()
         await state.comparisons.end_interrupted()
+        await state.jobs.start()
         yield
     finally:
         await state.executions.close()
         await state.comparisons.close()
+        await state.jobs.close()
         await run_in_threadpool(state.solving.close)
         await run_in_threadpool(engine.dispose)
 
@@ -186,8 +200,12 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         )
         document["components"]["schemas"].update(definitions["$defs"])
     refused = problem_answers(403)  # by the guard in front of every route
-    for path in document["paths"].values():
+    failed = problem_answers(503, 507)  # by the database, behind almost all
+    for route, path in document["paths"].items():
         for operation in path.values():
+            if route.startswith("/v1/"):
+                missing = failed.keys() - {int(code) for code in operation["responses"]}
+                operation["responses"] |= {str(code): failed[code] for code in sorted(missing)}
             # FastAPI's own form of a validation error, which is never sent.
             _drop_stock_validation_error(operation["responses"])
             operation["responses"] |= {str(code): what for code, what in refused.items()}

@@ -2,11 +2,13 @@
 
 import asyncio
 import contextlib
+import logging
 import socket
 from types import FrameType
 
 import typer
 import uvicorn
+from alembic.util import CommandError
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.browser_guard import is_loopback
@@ -16,9 +18,13 @@ from app.main import create_app
 from app.processes import READY_LINE
 from app.settings import Settings
 from app.store import TokenStore, open_engine
+from app.store.failures import cause_of
+from app.store.single_service import DatabaseInUse, Hold, hold_database
 from app.traffic import DRAIN_POLL_S, Traffic
 from hardware.instances import instance_names, load_instance
 from solver import InvalidRobot
+
+logger = logging.getLogger(__name__)
 
 # Streams and robot links are told to end once the requests are answered, and get this long.
 LAST_S = 5
@@ -108,10 +114,16 @@ def run_service(settings: Settings) -> None:
     )
     server = _Server(config, app.state.traffic, settings.grace_s)
     try:
+        hold = _hold(settings, server)
+    except CannotServe:
+        listener.close()
+        raise
+    try:
         server.run(sockets=[listener])
     except (KeyboardInterrupt, asyncio.CancelledError):
         return
     finally:
+        hold.release()
         listener.close()
     if not server.started:
         raise CannotServe("the service could not start; the log above says why")
@@ -135,6 +147,32 @@ def _check_tokens(settings: Settings) -> None:
             f"a token is required {where}, and there is none that is valid; "
             "make one: prunus token create --name NAME --scope SCOPE"
         )
+
+
+def _hold(settings: Settings, server: uvicorn.Server) -> Hold:
+    """The database, held for this service alone and brought to the newest schema."""
+
+    def end() -> None:
+        logger.critical("another service took the database while it was lost; this one ends")
+        server.should_exit = True
+
+    try:
+        url = settings.resolved_database_url
+        hold = hold_database(url, end)
+        try:
+            open_engine(url).dispose()
+        except BaseException:
+            hold.release()
+            raise
+    except DatabaseInUse as error:
+        raise CannotServe(str(error)) from None
+    except SQLAlchemyError as error:
+        raise CannotServe(f"the database cannot be used: {cause_of(error)}") from None
+    except CommandError as error:
+        raise CannotServe(f"the database is not this version's: {error}") from None
+    except OSError as error:
+        raise CannotServe(f"cannot use {error.filename}: {error.strerror}") from None
+    return hold
 
 
 def _bind(host: str, port: int) -> socket.socket:

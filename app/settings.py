@@ -29,7 +29,10 @@ class Settings(BaseSettings):
         database_url: an SQLAlchemy URL; empty: SQLite in `data_dir`.
         workers: processes that solve.
         body_limit_bytes: larger request bodies get 413.
-        sync_targets_limit: larger batches are refused.
+        sync_targets_limit: larger batches become jobs.
+        job_targets_limit: larger batches are refused.
+        job_workers: processes that solve jobs, at a lower priority.
+        most_waiting_jobs: so many jobs may wait or run.
         log_format: see `app.logs`.
         log_level: what is below is not logged.
         grace_s: requests being answered get this long when the service stops.
@@ -52,8 +55,11 @@ class Settings(BaseSettings):
     data_dir: Path = Path("prunus-data")
     database_url: str = ""
     workers: int = Field(default=2, ge=1, le=64)
-    body_limit_bytes: int = Field(default=8 * 1024 * 1024, ge=1024)
+    body_limit_bytes: int = Field(default=32 * 1024 * 1024, ge=1024)
     sync_targets_limit: int = Field(default=2000, ge=1)
+    job_targets_limit: int = Field(default=100_000, ge=1)
+    job_workers: int = Field(default=1, ge=1, le=64)
+    most_waiting_jobs: int = Field(default=100, ge=1, le=100_000)
     log_format: Literal["json", "console"] = "json"
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     grace_s: float = Field(default=20.0, ge=0, le=3600)
@@ -94,7 +100,10 @@ class Settings(BaseSettings):
     def resolved_database_url(self) -> URL:
         """The database's URL with the default filled in."""
         if self.database_url:
-            return make_url(self.database_url)
+            url = make_url(self.database_url)
+            # What PostgreSQL's own tools call it; without a driver SQLAlchemy takes another one.
+            postgresql = url.drivername in ("postgresql", "postgres")
+            return url.set(drivername="postgresql+psycopg") if postgresql else url
         return URL.create("sqlite", database=str(self.data_dir.resolve() / "prunus.sqlite3"))
 
 

@@ -31,4 +31,9 @@ class RobotClock:
 
 def timestamp() -> str:
     """This instant as RFC 3339 text in UTC, to the millisecond."""
-    return datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return instant_text(datetime.now(UTC))
+
+
+def instant_text(instant: datetime) -> str:
+    """An instant in UTC as RFC 3339 text, to the millisecond."""
+    return instant.isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -32,8 +32,28 @@ ensure_venv_module() {
     fi
 }
 
+# The tests run the store against a real server. They start one of their own, so the package must
+# not make and start one too, which it does unless told not to.
+ensure_postgresql() {
+    ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 && return
+    command -v initdb >/dev/null && return
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+        echo "== installing postgresql (the tests start a server of their own)"
+        export DEBIAN_FRONTEND=noninteractive
+        if apt-get update -q && apt-get install -y -q --no-install-recommends postgresql-common; then
+            settings=/etc/postgresql-common/createcluster.conf
+            sed -i '/^#*create_main_cluster/d' "$settings"
+            echo "create_main_cluster = false" >>"$settings"
+            apt-get install -y -q --no-install-recommends postgresql && return
+        fi
+    fi
+    echo "== PostgreSQL is not installed: its tests will be SKIPPED." >&2
+    echo "   On Debian, as root: apt-get install postgresql" >&2
+}
+
 python=$(find_python)
 ensure_venv_module
+case $lock in */dev.lock) ensure_postgresql ;; esac
 if ! fits "$venv/bin/python"; then
     echo "== creating $venv with $("$python" --version)"
     rm -rf "$venv"

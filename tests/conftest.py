@@ -1,11 +1,13 @@
 """Shared fixtures, and Hypothesis made reproducible."""
 
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from solver import Robot, load_robot
+from tests.postgresql import INSTALL, PostgresqlServer, find_programs
 
 # The device of real servos, for tests/contracts/test_bus.py. The service has a setting of that
 # name, its HTTP port, so the services that tests start must not see it.
@@ -25,3 +27,27 @@ settings.load_profile("reproducible")
 @pytest.fixture(scope="session")
 def tabletop() -> Robot:
     return load_robot("tabletop")
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[PostgresqlServer]:
+    """A PostgreSQL server that tests may also stop and start; it must run when they end."""
+    programs = find_programs()
+    if programs is None:
+        pytest.skip(f"PostgreSQL is not installed. {INSTALL}")
+    server = PostgresqlServer.create(programs)
+    yield server
+    server.remove()
+
+
+@pytest.fixture
+def postgresql_url(postgresql: PostgresqlServer) -> str:
+    """An empty PostgreSQL database of the test's own."""
+    return postgresql.new_database()
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """A store that was not tested must not go unnoticed between dots."""
+    if find_programs() is None:
+        terminalreporter.section("PostgreSQL is not installed", red=True, bold=True)
+        terminalreporter.line(f"Tests that need it were skipped. {INSTALL}")

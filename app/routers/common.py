@@ -39,6 +39,14 @@ def body_of(model: type) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
 
 
+NDJSON = "application/x-ndjson"
+
+
+def wants_lines(request: Request) -> bool:
+    """Whether the client asks for one JSON value a line."""
+    return NDJSON in request.headers.get("accept", "").lower()
+
+
 async def json_body(request: Request) -> bytes:
     """The body, which may be declared as nothing or as JSON.
 

@@ -1,7 +1,6 @@
 """Executions: plans on their way through a robot."""
 
 from fastapi import APIRouter, Query, Request, Response
-from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, lease_of, problem_answers
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
@@ -13,7 +12,9 @@ from app.schemas.executions import (
 )
 from app.services.execution_record import Execution, execution_to_json
 from app.services.executions import ExecutionService
+from app.services.store_calls import store_call
 from app.store import ExecutionRow, ExecutionStore, NewKey
+from hardware.clock import instant_text
 
 router = APIRouter(prefix="/v1/executions", tags=["executions"])
 
@@ -63,7 +64,7 @@ async def list_executions(
 ) -> Response:
     """Without their targets."""
     store: ExecutionStore = request.app.state.execution_store
-    rows = await run_in_threadpool(store.newest, robot)
+    rows = await store_call(store.newest, robot)
     answer = ExecutionsAnswer(executions=[_summary(row) for row in rows])
     return Response(answer.model_dump_json(), media_type="application/json")
 
@@ -126,15 +127,11 @@ def _accepted(execution: Execution) -> Response:
 
 
 def _summary(row: ExecutionRow) -> ExecutionSummary:
-    created, updated = (
-        instant.isoformat(timespec="milliseconds").replace("+00:00", "Z")
-        for instant in (row.created_at, row.updated_at)
-    )
     return ExecutionSummary(
         id=row.id,
         plan_id=row.plan_id,
         robot=row.robot,
         status=row.status,
-        created_at=created,
-        updated_at=updated,
+        created_at=instant_text(row.created_at),
+        updated_at=instant_text(row.updated_at),
     )

@@ -3,12 +3,12 @@
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
-from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, problem_answers
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.frames import FrameAnswer, FrameRegistrationRequest, FrameRequest, FramesAnswer
 from app.services.frames import NAME_PATTERN, FrameService, location_of
+from app.services.store_calls import store_call
 from app.store import NewKey
 
 router = APIRouter(prefix="/v1/frames", tags=["frames"])
@@ -33,7 +33,7 @@ _LOCATION: dict[str, Any] = {"Location": {"schema": {"type": "string"}}}
 )
 async def list_frames(request: Request) -> Response:
     """By name, without `residuals_m`; `base`, the robot's own, is not among them."""
-    body = await run_in_threadpool(_service(request).documents)
+    body = await store_call(_service(request).documents)
     return Response(body, media_type="application/json")
 
 
@@ -56,7 +56,7 @@ async def put_frame(name: Name, request: Request) -> Response:
     scaled or mirrored; it is registered all the same. Plans that exist do not change.
     """
     body = await json_body(request)
-    stored = await run_in_threadpool(
+    stored = await store_call(
         lambda: _service(request).put(name, FrameRequest.model_validate_json(body))
     )
     if stored.is_new:
@@ -84,7 +84,7 @@ async def register_frame(name: Name, request: Request) -> Response:
     body = await json_body(request)
 
     async def create(key: NewKey | None) -> Response:
-        stored = await run_in_threadpool(
+        stored = await store_call(
             lambda: _service(request).register(
                 name, FrameRegistrationRequest.model_validate_json(body), key
             )
@@ -102,7 +102,7 @@ async def register_frame(name: Name, request: Request) -> Response:
 )
 async def get_frame(name: Name, request: Request) -> Response:
     """As it was answered when it was registered."""
-    document = await run_in_threadpool(_service(request).document, name)
+    document = await store_call(_service(request).document, name)
     return Response(document, media_type="application/json")
 
 
@@ -115,7 +115,7 @@ async def get_frame(name: Name, request: Request) -> Response:
 )
 async def delete_frame(name: Name, request: Request) -> Response:
     """Plans that were made in it stay, and can be executed."""
-    await run_in_threadpool(_service(request).remove, name)
+    await store_call(_service(request).remove, name)
     return Response(status_code=204)
 
 

@@ -2,12 +2,12 @@
 
 from fastapi import APIRouter, Request
 from sqlalchemy.exc import SQLAlchemyError
-from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
 from app.routers.common import problem_answers
 from app.schemas.answers import HealthAnswer
 from app.services.solving import SolvingService
+from app.services.store_calls import store_call
 from app.store import PlanStore
 from app.traffic import RETRY_S, Traffic
 
@@ -36,7 +36,7 @@ async def get_readiness(request: Request) -> HealthAnswer:
     if not await solving.is_ready():
         raise ProblemError(503, "not_ready", "The solver is warming up.")
     try:
-        await run_in_threadpool(store.check)
+        await store_call(store.check)
     except SQLAlchemyError:
         raise ProblemError(503, "not_ready", "The store does not answer.") from None
     return HealthAnswer(status="ready")

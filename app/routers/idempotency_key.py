@@ -11,6 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
 from app.services.idempotency import IdempotencyService
+from app.services.store_calls import store_call
 from app.store import KeyedAnswer, NewKey
 
 HEADER: Final = "Idempotency-Key"
@@ -51,7 +52,7 @@ def with_key(operation: dict[str, Any]) -> dict[str, Any]:
             "pattern": "^[!-~]+$",
         },
     }
-    return {"parameters": [parameter], **operation}
+    return {**operation, "parameters": [parameter, *operation.get("parameters", ())]}
 
 
 async def once(
@@ -107,7 +108,7 @@ def _scope(request: Request) -> str:
 async def _replayed(answer: KeyedAnswer, read: Callable[[str], str | None] | None) -> Response:
     body = answer.body
     if body is None and read is not None:
-        body = await run_in_threadpool(read, answer.location.rpartition("/")[2])
+        body = await store_call(read, answer.location.rpartition("/")[2])
     if body is None:
         raise ProblemError(
             404, "not_found", "What was created under this key is not there any more."

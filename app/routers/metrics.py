@@ -2,11 +2,11 @@
 
 from fastapi import APIRouter, Request, Response
 from sqlalchemy.exc import SQLAlchemyError
-from starlette.concurrency import run_in_threadpool
 
 from app.metrics import MEDIA_TYPE, Metrics
 from app.routers.common import problem_answers
 from app.services.links import LinkService
+from app.services.store_calls import store_call
 from app.store.counts import stored_counts
 
 router = APIRouter(tags=["health"])
@@ -28,7 +28,7 @@ async def get_metrics(request: Request) -> Response:
     links: LinkService = request.app.state.links
     metrics.connected(links.count)
     try:
-        counts = await run_in_threadpool(stored_counts, request.app.state.engine)
+        counts = await store_call(stored_counts, request.app.state.engine)
     except SQLAlchemyError:
         pass  # counted, where the engine reports errors
     else:

@@ -1,26 +1,39 @@
 """Plans: made from a batch of targets, kept, and read again."""
 
 import uuid
-from collections.abc import Iterator
+from typing import Final
 
-import orjson
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
-from starlette.concurrency import run_in_threadpool
+from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.errors import ProblemError, invalid_request
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.common import NDJSON, body_of, json_body, problem_answers, wants_lines
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.jobs import job_json
 from app.schemas.answers import PlanAnswer
+from app.schemas.jobs import JobAnswer
 from app.schemas.requests import PlanRequest
 from app.services.frames import FrameService
+from app.services.job_parts import resolved_request
+from app.services.jobs import JobService
+from app.services.plan_reading import plan_chunks, plan_lines
 from app.services.sent_frames import FindFrame, stored_request
 from app.services.solving import SolvingService
+from app.services.store_calls import store_call
 from app.services.wire import parse_request, problem_from_wire
+from app.settings import Settings
 from app.store import NewKey, PlanStore, new_entry
 from solver import Fault, Problem
 
-NDJSON = "application/x-ndjson"
+RESPOND_ASYNC: Final = "respond-async"
+PREFER: Final = {
+    "name": "Prefer",
+    "in": "header",
+    "required": False,
+    "description": f"`{RESPOND_ASYNC}`: answer with a job, however few targets there are",
+    "schema": {"type": "string"},
+}
 
 router = APIRouter(prefix="/v1/plans", tags=["plans"])
 
@@ -35,28 +48,45 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
             "model": PlanAnswer,
             "headers": CREATED_HEADERS,
         },
+        202: {
+            "model": JobAnswer,
+            "headers": CREATED_HEADERS,
+            "description": "Taken on as a job; Location has its progress",
+        },
         **problem_answers(413, 415, 422, 500, 503),
     },
-    openapi_extra=with_key(body_of(PlanRequest)),
+    openapi_extra=with_key({"parameters": [PREFER], **body_of(PlanRequest)}),
 )
 async def create_plan(request: Request) -> Response:
-    """Targets that cannot be reached come back infeasible, with a reason."""
+    """Targets that cannot be reached come back infeasible, with a reason.
+
+    With `Prefer: respond-async`, and always above the limit of targets for an answer at once, the
+    batch becomes a job: 202, and its progress at Location.
+    """
     body = await json_body(request)
-    store: PlanStore = request.app.state.store
-    return await once(request, body, lambda key: _create(request, body, key), read=store.answer)
+    return await once(
+        request,
+        body,
+        lambda key: _create(request, body, key),
+        read=lambda plan_id: _stored_answer(request, plan_id),
+    )
 
 
 async def _create(request: Request, body: bytes, key: NewKey | None) -> Response:
-    limit: int = request.app.state.settings.sync_targets_limit
+    settings: Settings = request.app.state.settings
     frames: FrameService = request.app.state.frames
-    problem, normalised = await run_in_threadpool(_read, body, limit, frames.transform)
+    problem, normalised = await run_in_threadpool(
+        _read, body, settings.job_targets_limit, frames.transform
+    )
+    preferred = prefers_async(request)
+    if preferred or len(problem.targets) > settings.sync_targets_limit:
+        return await _create_job(request, problem, normalised, key, preferred)
     plan_id = uuid.uuid4().hex
     location = f"/v1/plans/{plan_id}"
     solving: SolvingService = request.app.state.solving
     answer = await solving.solve(problem, plan_id)
-    store: PlanStore = request.app.state.store
-    await run_in_threadpool(
-        store.add,
+    await store_call(
+        _store(request).add,
         plan_id,
         robot=problem.robot.name,
         request=normalised,
@@ -71,13 +101,35 @@ async def _create(request: Request, body: bytes, key: NewKey | None) -> Response
     )
 
 
+async def _create_job(
+    request: Request, problem: Problem, normalised: str, key: NewKey | None, preferred: bool
+) -> Response:
+    jobs: JobService = request.app.state.jobs
+    resolved = await run_in_threadpool(resolved_request, normalised, problem)
+    job = await jobs.create(problem, resolved, job_json, key)
+    headers = {"Location": f"/v1/jobs/{job.id}"}
+    if preferred:
+        headers["Preference-Applied"] = RESPOND_ASYNC
+    return Response(job_json(job), 202, media_type="application/json", headers=headers)
+
+
+def prefers_async(request: Request) -> bool:
+    """Whether the client would rather have a job (RFC 7240)."""
+    preferences = ",".join(request.headers.getlist("prefer")).split(",")
+    return any(entry.partition(";")[0].strip().lower() == RESPOND_ASYNC for entry in preferences)
+
+
 def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Problem, str]:
     request = parse_request(body)
     if len(request.targets) > targets_limit:
-        detail = f"more than {targets_limit} targets: asynchronous jobs are not available yet"
-        raise invalid_request([Fault(("targets",), detail)])
+        raise invalid_request([Fault(("targets",), f"more than {targets_limit} targets")])
     problem = problem_from_wire(request, find_frame)
     return problem, stored_request(request, problem)
+
+
+def _stored_answer(request: Request, plan_id: str) -> str | None:
+    plan = _store(request).plan(plan_id)
+    return None if plan is None else plan.answer
 
 
 @router.get(
@@ -87,7 +139,6 @@ def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Probl
     responses={
         200: {
             "model": PlanAnswer,
-            "content": {NDJSON: {"schema": {"type": "string"}}},
             "description": f"With Accept: {NDJSON} its approaches, one a line",
         },
         **problem_answers(404, 500),
@@ -95,16 +146,20 @@ def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Probl
 )
 async def get_plan(plan_id: str, request: Request) -> Response:
     """As it was answered, byte for byte."""
-    store: PlanStore = request.app.state.store
-    answer = await run_in_threadpool(store.answer, plan_id)
-    if answer is None:
+    store = _store(request)
+    plan = await store_call(store.plan, plan_id)
+    if plan is None:
         raise ProblemError(404, "not_found", "There is no plan of this id.")
     headers = {"Vary": "Accept"}
-    if NDJSON in request.headers.get("accept", "").lower():
-        return StreamingResponse(_lines(answer), media_type=NDJSON, headers=headers)
-    return Response(answer, media_type="application/json", headers=headers)
+    if wants_lines(request):
+        lines = iterate_in_threadpool(plan_lines(store, plan_id, plan))
+        return StreamingResponse(lines, media_type=NDJSON, headers=headers)
+    if not plan.in_parts:
+        return Response(plan.answer, media_type="application/json", headers=headers)
+    pieces = iterate_in_threadpool(plan_chunks(store, plan_id, plan))
+    return StreamingResponse(pieces, media_type="application/json", headers=headers)
 
 
-def _lines(answer: str) -> Iterator[bytes]:
-    for approach in orjson.loads(answer)["approaches"]:
-        yield orjson.dumps(approach, option=orjson.OPT_APPEND_NEWLINE)
+def _store(request: Request) -> PlanStore:
+    store: PlanStore = request.app.state.store
+    return store

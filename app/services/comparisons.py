@@ -4,18 +4,22 @@ import asyncio
 import logging
 import tempfile
 import uuid
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import orjson
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError, invalid_request
 from app.reports.html import waiting_page
 from app.services.comparing import ComparisonOrder, prepare, read_progress
 from app.services.solving import SolverLost, SolvingService
+from app.services.store_calls import store_call
 from app.store import ComparisonStore, NewKey, new_entry
+from app.store.failures import cause_of
 from hardware.clock import timestamp
 from solver import Fault
 from solver.comparison.registry import SCENARIOS
@@ -27,6 +31,7 @@ logger = logging.getLogger(__name__)
 QUEUED, RUNNING, COMPLETED, FAILED = "queued", "running", "completed", "failed"
 # Each takes about a minute; more than these would wait longer than anybody does.
 MOST_ACTIVE: Final = 20
+STORE_RETRY_S: Final = 1.0
 
 Document = dict[str, Any]
 
@@ -60,7 +65,7 @@ class ComparisonService:
 
     async def end_interrupted(self) -> None:
         """End what an earlier run of the service left active."""
-        for text in await run_in_threadpool(self._store.active):
+        for text in await store_call(self._store.active):
             detail = "the service was started again while it was waiting or running"
             await self._end(orjson.loads(text), {"status": FAILED, "detail": detail})
 
@@ -79,7 +84,7 @@ class ComparisonService:
         """
         if faults := await run_in_threadpool(_faults, scenario, methods, repeats):
             raise invalid_request(faults)
-        if await run_in_threadpool(self._store.count_active) >= MOST_ACTIVE:
+        if await store_call(self._store.count_active) >= MOST_ACTIVE:
             raise ProblemError(
                 503, "comparisons_full", f"{MOST_ACTIVE} comparisons are waiting already."
             )
@@ -91,7 +96,7 @@ class ComparisonService:
             document["repeats"] = repeats
         document |= {"status": QUEUED, "created_at": timestamp()}
         text = _json(document)
-        await run_in_threadpool(
+        await store_call(
             self._store.add,
             comparison_id,
             scenario=scenario,
@@ -107,20 +112,29 @@ class ComparisonService:
     async def _run(self, work: _Work) -> None:
         async with self._one_at_a_time:
             document = work.document | {"status": RUNNING, "started_at": timestamp()}
-            await self._save(document)
+            await self._surely(lambda: self._save(document))
             try:
                 result, page = await self._solving.compare(work.order)
             except SolverLost:
-                await self._end(
-                    document, {"status": FAILED, "detail": "the solver was lost over it"}
-                )
+                ending = {"status": FAILED, "detail": "the solver was lost over it"}
+                await self._surely(lambda: self._end(document, ending))
             except Exception:
                 logger.exception("comparison %s could not be run", document["id"])
                 detail = "it could not be run; the service's log says more"
-                await self._end(document, {"status": FAILED, "detail": detail})
+                failed = {"status": FAILED, "detail": detail}
+                await self._surely(lambda: self._end(document, failed))
             else:
                 complete = {"status": COMPLETED, "result": orjson.loads(result)}
-                await self._end(document, complete, page)
+                await self._surely(lambda: self._end(document, complete, page))
+
+    async def _surely(self, store: Callable[[], Awaitable[None]]) -> None:
+        """Try again until the database is back: nobody else would end the comparison."""
+        while True:
+            try:
+                return await store()
+            except SQLAlchemyError as error:
+                logger.warning("a comparison cannot be stored yet: %s", cause_of(error))
+                await asyncio.sleep(STORE_RETRY_S)
 
     async def document(self, comparison_id: str) -> Document:
         """The answer for a comparison, with its progress while it is running.
@@ -128,7 +142,7 @@ class ComparisonService:
         Raises:
             ProblemError: 404, there is none of this id.
         """
-        text = await run_in_threadpool(self._store.document, comparison_id)
+        text = await store_call(self._store.document, comparison_id)
         if text is None:
             raise ProblemError(404, "not_found", "There is no comparison of this id.")
         document: Document = orjson.loads(text)
@@ -144,7 +158,7 @@ class ComparisonService:
         Raises:
             ProblemError: 404, there is none of this id.
         """
-        page = await run_in_threadpool(self._store.page, comparison_id)
+        page = await store_call(self._store.page, comparison_id)
         if page is not None:
             return page
         document = await self.document(comparison_id)
@@ -163,7 +177,7 @@ class ComparisonService:
     async def _save(
         self, document: Document, *, ended: bool = False, page: str | None = None
     ) -> None:
-        await run_in_threadpool(
+        await store_call(
             self._store.save, document["id"], document=_json(document), ended=ended, page=page
         )
 

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import orjson
-from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError, invalid_request
 from app.services.execution_record import Execution, targets_of_plan
 from app.services.links import Link
+from app.services.plan_reading import whole_answer
+from app.services.store_calls import store_call
 from app.store import PlanStore
 from hardware.instances import RobotInstance, load_instance
 from hardware.messages import TargetAccount
@@ -43,7 +44,7 @@ async def ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPla
     Raises:
         ProblemError: no such plan or robot, or no target of the plan can be approached.
     """
-    return await run_in_threadpool(_ordered_plan, plans, plan_id, robot)
+    return await store_call(_ordered_plan, plans, plan_id, robot)
 
 
 def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:
@@ -51,13 +52,14 @@ def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:
     if stored is None:
         raise ProblemError(404, "not_found", "There is no plan of this id.")
     instance = robot_instance(robot)
-    answer = orjson.loads(stored.answer)
+    text = whole_answer(plans, plan_id, stored)
+    answer = orjson.loads(text)
     if not any(approach["status"] == PLANNED for approach in answer["approaches"]):
         raise invalid_request([Fault(("plan_id",), "the plan has no planned target")])
     return OrderedPlan(
         id=plan_id,
         request=stored.request,
-        answer=stored.answer,
+        answer=text.decode(),
         tool=answer["tool"],
         model_version=answer["model_version"],
         start_joints=tuple(answer["start_joints"]),

@@ -28,6 +28,7 @@ SERVICE_RESTARTED: Final = "service_restarted"
 PLAN_OUTDATED: Final = "plan_outdated"
 SOLVER_FAILED: Final = "solver_failed"
 STOPPED: Final = "stopped"
+STORE_LOST: Final = "store_lost"
 
 EXECUTION_ERROR_CODES: Final = (
     WORKER_LOST,
@@ -36,6 +37,7 @@ EXECUTION_ERROR_CODES: Final = (
     PLAN_OUTDATED,
     SOLVER_FAILED,
     STOPPED,
+    STORE_LOST,
 )
 """Codes of the errors with which the service itself ends an execution."""
 

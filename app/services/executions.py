@@ -5,6 +5,7 @@ nor a restart sends it again. A robot's executions change one after the other, u
 """
 
 import asyncio
+import contextlib
 import logging
 import uuid
 from collections.abc import Callable, Coroutine
@@ -13,7 +14,6 @@ from datetime import datetime
 from typing import Any
 
 from sqlalchemy.exc import SQLAlchemyError
-from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
 from app.services.execution_checks import (
@@ -28,6 +28,7 @@ from app.services.execution_record import (
     SERVICE_RESTARTED,
     SOLVER_FAILED,
     STOPPED,
+    STORE_LOST,
     Execution,
     corrected,
     ended,
@@ -38,6 +39,7 @@ from app.services.execution_record import (
 from app.services.leases import LeaseService
 from app.services.links import Link, LinkService
 from app.services.solving import SolverLost, SolvingService
+from app.services.store_calls import store_call
 from app.store import ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
 from hardware.clock import timestamp
 from hardware.messages import (
@@ -58,6 +60,9 @@ from hardware.messages import (
 
 logger = logging.getLogger(__name__)
 
+# What must be stored is tried again this often until the database is back.
+STORE_RETRY_S = 1.0
+
 
 @dataclass
 class _Order:
@@ -67,6 +72,7 @@ class _Order:
         handed_over: its messages are with the link.
         withdrawn: the worker will never have all of them, so it cannot begin.
         canceling: a cancel was accepted; nothing takes it back.
+        ending: its end could not be stored yet, and is being tried again.
     """
 
     execution_id: str
@@ -74,6 +80,7 @@ class _Order:
     handed_over: bool = False
     withdrawn: bool = False
     canceling: bool = False
+    ending: bool = False
 
     def withdraw(self) -> bool:
         """Keep the worker from beginning; False if it may have begun."""
@@ -104,7 +111,7 @@ class ExecutionService:
 
     async def end_interrupted(self) -> None:
         """End what an earlier run of the service left active; nothing of it is sent again."""
-        for document in await run_in_threadpool(self._store.active):
+        for document in await store_call(self._store.active):
             execution = execution_from_json(document)
             await self._fail(execution, SERVICE_RESTARTED, "the service was started again")
 
@@ -146,7 +153,7 @@ class ExecutionService:
     async def _add(self, execution: Execution, key: NewKey | None) -> None:
         document = execution_to_json(execution)
         try:
-            await run_in_threadpool(
+            await store_call(
                 self._store.add,
                 execution.id,
                 plan_id=execution.plan_id,
@@ -158,6 +165,20 @@ class ExecutionService:
             )
         except RobotBusy:
             raise ProblemError(409, "busy", "The robot has an active execution.") from None
+        except SQLAlchemyError:
+            # It may be stored all the same, and nobody would ever end it.
+            self._start(self._end_unaccounted(execution))
+            raise
+
+    async def _end_unaccounted(self, execution: Execution) -> None:
+        detail = "the database was lost while it was taken on; nothing was sent"
+        while True:
+            try:
+                await self._fail(execution, STORE_LOST, detail)
+            except SQLAlchemyError:
+                await asyncio.sleep(STORE_RETRY_S)
+            else:
+                return
 
     async def _prepare(self, order: _Order, plan: OrderedPlan) -> None:
         try:
@@ -188,7 +209,7 @@ class ExecutionService:
 
     async def document(self, execution_id: str) -> str:
         """The body of the answer for an execution, or ProblemError: there is none."""
-        document = await run_in_threadpool(self._store.document, execution_id)
+        document = await store_call(self._store.document, execution_id)
         if document is None:
             raise execution_not_found()
         return document
@@ -245,7 +266,7 @@ class ExecutionService:
     async def take_account(self, link: Link, account: ExecutionAccount) -> None:
         """Keep what a worker tells of an execution; accounts of others' are ignored."""
         async with self._lock(link.robot):
-            document = await run_in_threadpool(self._store.document, account.execution_id)
+            document = await store_call(self._store.document, account.execution_id)
             execution = None if document is None else execution_from_json(document)
             if execution is not None and execution.robot != link.robot:
                 execution = None
@@ -273,6 +294,25 @@ class ExecutionService:
                 logger.exception("execution %s could not be ended", order.execution_id)
 
     async def _end(self, order: _Order, status: str, error: Failure | None) -> Execution:
+        try:
+            return await self._end_now(order, status, error)
+        except SQLAlchemyError:
+            # The robot is free again only when this is stored; the caller need not come back.
+            if not order.ending:
+                order.ending = True
+                self._start(self._end_later(order, status, error))
+            raise
+
+    async def _end_later(self, order: _Order, status: str, error: Failure | None) -> None:
+        robot = order.link.robot
+        while self._orders.get(robot) is order:
+            await asyncio.sleep(STORE_RETRY_S)
+            async with self._lock(robot):
+                if self._orders.get(robot) is order:
+                    with contextlib.suppress(SQLAlchemyError):
+                        await self._end_now(order, status, error)
+
+    async def _end_now(self, order: _Order, status: str, error: Failure | None) -> Execution:
         execution = execution_from_json(await self.document(order.execution_id))
         execution = ended(execution, status, error, timestamp())
         await self._save(execution)
@@ -283,7 +323,7 @@ class ExecutionService:
         await self._save(ended(execution, FAILED, failure, timestamp()))
 
     async def _save(self, execution: Execution) -> None:
-        await run_in_threadpool(
+        await store_call(
             self._store.save,
             execution.id,
             status=execution.status,
@@ -301,7 +341,12 @@ class ExecutionService:
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
         task = asyncio.create_task(work)
         self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(self._done)
+
+    def _done(self, task: asyncio.Task[None]) -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            logger.error("work on an execution failed", exc_info=error)
 
     async def close(self) -> None:
         """Drop what is being prepared; the next start ends it."""

@@ -14,6 +14,7 @@ from app.schemas.frames import FrameRegistrationRequest, FrameRequest, PointPair
 from app.services.sent_frames import BASE_FRAME
 from app.services.wire import present
 from app.store import FramesFull, FrameStore, NewKey, StoredFrame
+from hardware.clock import instant_text
 from hardware.instances import instance_names, load_instance
 from solver import Fault, Robot, UnknownRobot
 from solver.frames import (
@@ -195,11 +196,7 @@ def _json(frame: _Frame, created_at: datetime, updated_at: datetime) -> str:
         scale=None if agreement is None else agreement.scale,
         rotation_std_rad=None if agreement is None else agreement.rotation_std_rad,
         warnings=[{"code": row.code, "detail": row.detail} for row in frame.warnings],
-        created_at=_rfc3339(created_at),
-        updated_at=_rfc3339(updated_at),
+        created_at=instant_text(created_at),
+        updated_at=instant_text(updated_at),
     )
     return orjson.dumps(values).decode()
-
-
-def _rfc3339(instant: datetime) -> str:
-    return instant.isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -5,9 +5,8 @@ from collections.abc import Awaitable, Callable
 from typing import TypeVar
 from weakref import WeakValueDictionary
 
-from starlette.concurrency import run_in_threadpool
-
 from app.errors import ProblemError
+from app.services.store_calls import store_call
 from app.store import IdempotencyStore, KeyedAnswer, KeyTaken, NewKey
 
 Created = TypeVar("Created")
@@ -55,7 +54,7 @@ class IdempotencyService:
             lock.release()
 
     async def _find(self, key: NewKey) -> KeyedAnswer | None:
-        stored = await run_in_threadpool(self._store.find, key.scope, key.key)
+        stored = await store_call(self._store.find, key.scope, key.key)
         if stored is None:
             return None
         if stored.digest != key.digest:

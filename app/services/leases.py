@@ -16,6 +16,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Final
 
 from app.errors import ProblemError
+from hardware.clock import instant_text
 
 LEASE_HEADER: Final = "Prunus-Lease"
 LEAST_LEASE_S: Final = 1.0
@@ -107,7 +108,7 @@ class LeaseService:
         until = datetime.now(UTC) + timedelta(seconds=lease.duration_s)
         lease = replace(
             lease,
-            expires_at=until.isoformat(timespec="milliseconds").replace("+00:00", "Z"),
+            expires_at=instant_text(until),
             ends=self._monotonic() + lease.duration_s,
         )
         self._leases[lease.robot] = lease

@@ -1,4 +1,4 @@
-"""What persists: plans with their requests, executions, comparisons, frames, keys and tokens."""
+"""What persists: plans and jobs, executions, comparisons, frames, keys and tokens."""
 
 from app.store.comparisons import ComparisonStore
 from app.store.database import open_engine
@@ -14,6 +14,7 @@ from app.store.idempotency import (
     insert_key,
     new_entry,
 )
+from app.store.jobs import JobEnded, JobRow, JobStore, JobWork, NewPart
 from app.store.plans import PlanStore, StoredPlan
 from app.store.tokens import TokenRow, TokenStore
 
@@ -24,10 +25,15 @@ __all__ = [
     "FrameStore",
     "FramesFull",
     "IdempotencyStore",
+    "JobEnded",
+    "JobRow",
+    "JobStore",
+    "JobWork",
     "KeyTaken",
     "KeyedAnswer",
     "NewEntry",
     "NewKey",
+    "NewPart",
     "PlanStore",
     "RobotBusy",
     "StoredEntry",

@@ -1,4 +1,4 @@
-"""The engine: SQLite made durable and safe for many processes, or another database by URL."""
+"""The engine: SQLite made durable and safe for many processes, or PostgreSQL by URL."""
 
 from importlib import resources
 from pathlib import Path
@@ -8,20 +8,54 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import URL, Connection, Engine, create_engine, event
 
-BUSY_TIMEOUT_MS = 10_000
+from app.store.postgresql import connect_postgresql
+
+# A writing transaction lasts milliseconds; one that waits longer than this waits for something
+# that does not end by itself, and its client is better told so.
+BUSY_TIMEOUT_MS = 5_000
+# After a burst under many readers the write-ahead log is cut back to this.
+WAL_KEPT_BYTES = 64 * 1024 * 1024
+# As many as `app.services.store_calls` lets wait in the database, and a few for the rest.
+POOL_SIZE = 16
+POOL_WAIT_S = 5.0
 
 
 def open_engine(url: URL) -> Engine:
-    """An engine with the schema at its newest version."""
+    """An engine with the schema at its newest version.
+
+    Raises:
+        sqlalchemy.exc.SQLAlchemyError: the database cannot be used now.
+        alembic.util.CommandError: it was made by a newer Prunus.
+        OSError: its folder cannot be made.
+    """
+    engine = create_store_engine(url)
+    try:
+        with writing(engine).begin() as connection:
+            migrate(connection)
+    except BaseException:
+        engine.dispose()
+        raise
+    return engine
+
+
+def create_store_engine(url: URL) -> Engine:
+    """An engine for a database as it stands."""
     sqlite = url.get_backend_name() == "sqlite"
     if sqlite and url.database:
         Path(url.database).parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(url, pool_pre_ping=not sqlite, hide_parameters=True)
+    engine = create_engine(
+        url,
+        pool_pre_ping=not sqlite,
+        pool_size=POOL_SIZE,
+        max_overflow=0,
+        pool_timeout=POOL_WAIT_S,
+        hide_parameters=True,  # plans and hashes of tokens do not belong in a log
+    )
     if sqlite:
         event.listen(engine, "connect", _configure_sqlite)
         event.listen(engine, "begin", _begin_sqlite)
-    with writing(engine).begin() as connection:
-        migrate(connection)
+    else:
+        event.listen(engine, "do_connect", connect_postgresql)
     return engine
 
 
@@ -36,6 +70,7 @@ def _configure_sqlite(connection: Any, _: Any) -> None:
     cursor = connection.cursor()
     cursor.execute(f"PRAGMA busy_timeout = {BUSY_TIMEOUT_MS}")
     cursor.execute("PRAGMA journal_mode = WAL")
+    cursor.execute(f"PRAGMA journal_size_limit = {WAL_KEPT_BYTES}")
     cursor.execute("PRAGMA synchronous = FULL")
     cursor.execute("PRAGMA foreign_keys = ON")
     cursor.close()

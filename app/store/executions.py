@@ -10,6 +10,7 @@ from sqlalchemy.exc import IntegrityError
 
 from app.store.database import writing
 from app.store.idempotency import NewEntry, insert_key
+from app.store.instants import utc
 from app.store.plans import ID
 from app.store.tables import EXECUTIONS
 
@@ -109,6 +110,8 @@ class ExecutionStore:
 
     def newest(self, robot: str = "") -> list[ExecutionRow]:
         """The newest ones, newest first: of a robot, or of all."""
+        if "\0" in robot:
+            return []  # no robot's name has one, and PostgreSQL would refuse the question
         columns = [EXECUTIONS.c[name] for name in ExecutionRow.__dataclass_fields__]
         query = select(*columns).order_by(EXECUTIONS.c.created_at.desc(), EXECUTIONS.c.id)
         if robot:
@@ -117,13 +120,8 @@ class ExecutionStore:
             rows = connection.execute(query.limit(MOST_LISTED)).all()
         return [
             ExecutionRow(
-                row.id, row.plan_id, row.robot, row.status, _utc(row.created_at),
-                _utc(row.updated_at),
+                row.id, row.plan_id, row.robot, row.status, utc(row.created_at),
+                utc(row.updated_at),
             )
             for row in rows
         ]  # fmt: skip
-
-
-def _utc(instant: datetime) -> datetime:
-    # SQLite keeps no time zone; PostgreSQL gives back the session's.
-    return instant.replace(tzinfo=UTC) if instant.tzinfo is None else instant.astimezone(UTC)

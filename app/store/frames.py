@@ -9,6 +9,7 @@ from sqlalchemy.exc import IntegrityError
 
 from app.store.database import writing
 from app.store.idempotency import NewKey, insert_key, new_entry
+from app.store.instants import utc
 from app.store.tables import FRAMES
 
 MOST_FRAMES = 1000
@@ -75,7 +76,7 @@ class FrameStore:
         with writing(self._engine).begin() as connection:
             created_at = connection.execute(there).scalar_one_or_none()
             if created_at is not None:
-                text = document(_utc(created_at), now)
+                text = document(utc(created_at), now)
                 insert_key(connection, new_entry(key, 201, location, text))
                 changes = update(FRAMES).where(FRAMES.c.name == name)
                 connection.execute(changes.values(updated_at=now, document=text))
@@ -107,8 +108,3 @@ class FrameStore:
         """Whether there was a frame of that name; now there is none."""
         with writing(self._engine).begin() as connection:
             return connection.execute(delete(FRAMES).where(FRAMES.c.name == name)).rowcount > 0
-
-
-def _utc(instant: datetime) -> datetime:
-    # SQLite keeps no time zone; PostgreSQL gives back the session's.
-    return instant.replace(tzinfo=UTC) if instant.tzinfo is None else instant.astimezone(UTC)

@@ -1,24 +1,31 @@
 """The table of plans."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import count
 
 from sqlalchemy import Engine, insert, select
 
 from app.store.database import writing
 from app.store.idempotency import NewEntry, insert_key
-from app.store.tables import PLANS
+from app.store.tables import PLAN_PARTS, PLANS
 
 ID = re.compile(r"[0-9a-f]{32}")
 
 
 @dataclass(frozen=True)
 class StoredPlan:
-    """A plan's answer with the request that it answers, both JSON."""
+    """A plan's answer with the request that it answers, both JSON.
+
+    Attributes:
+        in_parts: the answer has no `approaches`; they are in the parts of the plan.
+    """
 
     request: str
     answer: str
+    in_parts: bool = False
 
 
 class PlanStore:
@@ -52,19 +59,32 @@ class PlanStore:
             insert_key(connection, key)
             connection.execute(insert(PLANS), row)
 
-    def answer(self, plan_id: str) -> str | None:
-        """The answer of that id, or None."""
-        plan = self.plan(plan_id)
-        return None if plan is None else plan.answer
-
     def plan(self, plan_id: str) -> StoredPlan | None:
         """The plan of that id, or None."""
         if not ID.fullmatch(plan_id):
             return None
         with self._engine.connect() as connection:
-            query = select(PLANS.c.request, PLANS.c.answer).where(PLANS.c.id == plan_id)
+            query = select(PLANS.c.request, PLANS.c.answer, PLANS.c.in_parts).where(
+                PLANS.c.id == plan_id
+            )
             row = connection.execute(query).one_or_none()
-        return None if row is None else StoredPlan(row.request, row.answer)
+        return None if row is None else StoredPlan(row.request, row.answer, row.in_parts)
+
+    def part(self, plan_id: str, number: int) -> str | None:
+        """The approaches of a part as a JSON array, or None: there is no such part yet."""
+        query = select(PLAN_PARTS.c.approaches).where(
+            PLAN_PARTS.c.plan_id == plan_id, PLAN_PARTS.c.number == number
+        )
+        with self._engine.connect() as connection:
+            return connection.execute(query).scalar_one_or_none()
+
+    def parts(self, plan_id: str) -> Iterator[str]:
+        """The parts of a plan or job as far as they are there, in order, JSON arrays."""
+        for number in count():
+            approaches = self.part(plan_id, number)
+            if approaches is None:
+                return
+            yield approaches
 
     def check(self) -> None:
         """Raise SQLAlchemyError unless the database answers."""

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from sqlalchemy import Engine, RowMapping, func, insert, select, update
 
 from app.store.database import writing
+from app.store.instants import utc
 from app.store.tables import TOKENS
 
 
@@ -88,11 +89,6 @@ def _token(fields: RowMapping) -> TokenRow:
         name=fields["name"],
         scopes=tuple(fields["scopes"].split()),
         digest=fields["digest"],
-        created_at=_utc(fields["created_at"]),
-        revoked_at=None if fields["revoked_at"] is None else _utc(fields["revoked_at"]),
+        created_at=utc(fields["created_at"]),
+        revoked_at=None if fields["revoked_at"] is None else utc(fields["revoked_at"]),
     )
-
-
-def _utc(instant: datetime) -> datetime:
-    # SQLite keeps no time zone; PostgreSQL gives back the session's.
-    return instant.replace(tzinfo=UTC) if instant.tzinfo is None else instant.astimezone(UTC)

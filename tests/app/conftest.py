@@ -14,6 +14,10 @@ from typing import IO, Any
 
 import httpx2
 import pytest
+from sqlalchemy import URL, Engine, make_url
+
+from app.settings import Settings
+from app.store import open_engine
 
 REPOSITORY = Path(__file__).parents[2]
 EXAMPLE = REPOSITORY / "openapi" / "examples" / "data_set_3.json"
@@ -90,6 +94,23 @@ def running_server(
             except subprocess.TimeoutExpired:
                 process.kill()
                 raise
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def store_url(request: pytest.FixtureRequest, tmp_path: Path) -> URL:
+    """An empty database of each kind that the service takes."""
+    if request.param == "sqlite":
+        return make_url(f"sqlite:///{tmp_path / 'prunus.sqlite3'}")
+    given: str = request.getfixturevalue("postgresql_url")
+    return Settings(database_url=given).resolved_database_url
+
+
+@pytest.fixture
+def engine(store_url: URL) -> Iterator[Engine]:
+    """An engine for a new database with the newest schema."""
+    opened = open_engine(store_url)
+    yield opened
+    opened.dispose()
 
 
 @pytest.fixture(scope="session")

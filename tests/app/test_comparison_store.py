@@ -1,21 +1,11 @@
 """The table of comparisons."""
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 from sqlalchemy import URL, Engine
 
 from app.store import ComparisonStore, open_engine
 
 ID, OTHER = "0" * 32, "1" * 32
-
-
-@pytest.fixture
-def engine(tmp_path: Path) -> Iterator[Engine]:
-    opened = open_engine(URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3")))
-    yield opened
-    opened.dispose()
 
 
 def test_a_comparison_is_active_until_it_has_ended(engine: Engine) -> None:
@@ -41,11 +31,10 @@ def test_unknown_ids_have_nothing(engine: Engine, comparison_id: str) -> None:
     assert store.page(comparison_id) is None
 
 
-def test_comparisons_outlive_the_service(tmp_path: Path) -> None:
-    url = URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3"))
-    first = open_engine(url)
+def test_comparisons_outlive_the_service(store_url: URL) -> None:
+    first = open_engine(store_url)
     ComparisonStore(first).add(ID, scenario="strawberry", document="{}")
     first.dispose()
-    again = open_engine(url)
+    again = open_engine(store_url)
     assert ComparisonStore(again).active() == ["{}"]
     again.dispose()

@@ -1,6 +1,4 @@
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 
 import pytest
 from alembic.autogenerate import compare_metadata
@@ -19,13 +17,6 @@ def identifier(number: int) -> str:
     return f"{number:032x}"
 
 
-@pytest.fixture
-def engine(tmp_path: Path) -> Iterator[Engine]:
-    engine = open_engine(URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3")))
-    yield engine
-    engine.dispose()
-
-
 def add(store: ExecutionStore, number: int, robot: str = "tabletop") -> str:
     execution_id = identifier(number)
     store.add(
@@ -40,9 +31,8 @@ def test_migrations_lead_to_the_tables(engine: Engine) -> None:
         assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
 
 
-def test_a_database_of_the_first_version_keeps_its_plans(tmp_path: Path) -> None:
-    url = URL.create("sqlite", database=str(tmp_path / "prunus.sqlite3"))
-    engine = create_engine(url)
+def test_a_database_of_the_first_version_keeps_its_plans(store_url: URL) -> None:
+    engine = create_engine(store_url)
     with engine.begin() as connection:
         migrate(connection, "0001")
         connection.execute(
@@ -50,7 +40,7 @@ def test_a_database_of_the_first_version_keeps_its_plans(tmp_path: Path) -> None
             {"id": identifier(1), "at": "2026-01-01 00:00:00"},
         )
     engine.dispose()
-    engine = open_engine(url)
+    engine = open_engine(store_url)
     plan = PlanStore(engine).plan(identifier(1))
     assert plan is not None
     assert (plan.request, plan.answer) == ("{}", "[]")

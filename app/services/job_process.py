@@ -1,0 +1,86 @@
+"""One process for jobs: at low priority, one job at a time, and ended at once to cancel."""
+
+import asyncio
+import contextlib
+import os
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor
+from typing import Any, TypeVar
+
+from app.services.job_parts import choose_for_job, load_job, plan_head, solve_part
+from app.services.measures import PlanFigures
+from app.services.parts import Totals
+from app.services.solving import LogOptions, Pool, SolverLost
+from app.store import JobRow, JobWork, NewPart
+
+Result = TypeVar("Result")
+
+NICENESS = 15
+"""Added to the niceness of the service: a job takes what plans and the service itself leave."""
+
+
+def yield_to_others() -> None:
+    """Lower the priority of this process."""
+    os.nice(NICENESS)
+    with contextlib.suppress(AttributeError, OSError):
+        # Batch work is not preferred after waking up; where there is no such class, niceness is it.
+        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+
+
+class JobProcess:
+    """For the event loop only.
+
+    Args:
+        logs: how the process logs.
+    """
+
+    def __init__(self, logs: LogOptions) -> None:
+        self._logs = logs
+        self._pool: Pool | None = None
+
+    async def load(self, job_id: str, work: JobWork) -> str:
+        """Make a job ready; what its batch decided as one, as text.
+
+        Raises:
+            SolverLost: the process died, or was ended.
+        """
+        await self._run(load_job, job_id, work.request, work.choice)
+        if work.choice is not None:
+            return work.choice
+        return await self._run(choose_for_job, job_id)
+
+    async def part(
+        self, job_id: str, number: int, first: int, reference: str | None
+    ) -> tuple[NewPart, PlanFigures]:
+        """The next part of the job that is loaded.
+
+        Raises:
+            SolverLost: the process died, or was ended.
+        """
+        return await self._run(solve_part, job_id, number, first, reference)
+
+    async def head(self, job: JobRow) -> str:
+        """The answer of the loaded job's plan without its approaches.
+
+        Raises:
+            SolverLost: the process died, or was ended.
+        """
+        totals = Totals(job.planned, job.infeasible, job.total_effort, job.elapsed_s)
+        return await self._run(plan_head, job.id, totals)
+
+    async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
+        if self._pool is None:
+            self._pool = await asyncio.to_thread(Pool, 1, self._logs, yield_to_others)
+        try:
+            return await asyncio.wrap_future(self._pool.executor.submit(work, *arguments))
+        except (BrokenExecutor, RuntimeError) as error:
+            if isinstance(error, RuntimeError) and not isinstance(error, BrokenExecutor):
+                raise
+            await self.end()
+            raise SolverLost from None
+
+    async def end(self) -> None:
+        """End the process at once, whatever it does; the next work starts another."""
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            await asyncio.to_thread(pool.close)

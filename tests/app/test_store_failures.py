@@ -1,0 +1,138 @@
+"""A lost, locked or hung database: clear answers, and recovery without help."""
+
+import contextlib
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import make_url
+from sqlalchemy.exc import SQLAlchemyError
+
+from app.settings import Settings
+from app.store import ExecutionStore, PlanStore, open_engine
+from app.store import postgresql as postgresql_connections
+from app.store.failures import StoreFailure, failure_of
+from tests.app.conftest import REPOSITORY, assert_problem, running_server, wait_until
+from tests.postgresql import PostgresqlServer
+
+Body = dict[str, Any]
+ID = "0" * 32
+
+
+def assert_unavailable(answer: Any) -> None:
+    problem = assert_problem(answer, 503)
+    assert problem["type"].endswith("store_unavailable")
+    assert int(answer.headers["retry-after"]) > 0
+
+
+def serve(data_dir: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "app", "serve", "--port", "0", "--data-dir", str(data_dir)]
+    return subprocess.run(
+        command, cwd=REPOSITORY, env={**os.environ, **environment}, capture_output=True, text=True,
+        timeout=60, check=False,
+    )  # fmt: skip
+
+
+def test_locked_and_taken_sqlite(tmp_path: Path, request_body: Body) -> None:
+    with running_server(tmp_path) as server:
+        second = serve(tmp_path)
+        assert second.returncode == 1
+        assert len(second.stderr.splitlines()) == 1
+        assert "another service" in second.stderr
+        path = tmp_path / "prunus.sqlite3"
+        with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as other:
+            other.execute("BEGIN EXCLUSIVE")
+            assert_unavailable(server.client.post("/v1/plans", json=request_body))
+            assert server.client.get("/healthz").status_code == 200
+            other.execute("ROLLBACK")
+        assert server.stored_plans() == 0
+        assert server.client.post("/v1/plans", json=request_body).status_code == 201
+        assert server.stored_plans() == 1
+
+
+def test_lost_postgresql(
+    tmp_path: Path, postgresql: PostgresqlServer, postgresql_url: str, request_body: Body
+) -> None:
+    with running_server(tmp_path, PRUNUS_DATABASE_URL=postgresql_url) as server:
+        plan = server.client.post("/v1/plans", json=request_body)
+        assert plan.status_code == 201, plan.text
+        location = plan.headers["location"]
+        assert "another service" in serve(tmp_path, PRUNUS_DATABASE_URL=postgresql_url).stderr
+        postgresql.stop()
+        try:
+            assert_unavailable(server.client.post("/v1/plans", json=request_body))
+            assert_unavailable(server.client.get(location))
+            assert_unavailable(server.client.get("/v1/executions"))
+            assert_problem(server.client.get("/readyz"), 503)
+            assert server.client.get("/healthz").status_code == 200
+        finally:
+            postgresql.start()
+        wait_until(lambda: server.client.get("/readyz").status_code == 200, 30)
+        assert server.client.get(location).content == plan.content
+        assert server.client.post("/v1/plans", json=request_body).status_code == 201
+        # The lock went with the connection, and is taken again.
+        locks = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND granted"
+        database = postgresql_url.rpartition("/")[2]
+        wait_until(lambda: postgresql.execute(locks, database) == [(1,)], 30)
+        assert server.client.get("/v1/executions?robot=%00").json() == {"executions": []}
+
+
+def test_a_database_that_is_not_there_is_one_line(
+    tmp_path: Path, postgresql: PostgresqlServer
+) -> None:
+    finished = serve(tmp_path, PRUNUS_DATABASE_URL=postgresql.url("nothing"))
+    assert finished.returncode == 1
+    assert len(finished.stderr.splitlines()) == 1, finished.stderr
+    assert "database" in finished.stderr
+
+
+def test_a_hung_server_is_given_up(
+    postgresql: PostgresqlServer, postgresql_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = Settings(database_url=postgresql_url).resolved_database_url
+    engine = open_engine(url)
+    store = PlanStore(engine)
+    store.check()
+    backends = [
+        pid
+        for (pid,) in postgresql.execute(
+            f"SELECT pid FROM pg_stat_activity WHERE datname = '{url.database}'"
+        )
+    ]
+    assert backends
+    monkeypatch.setattr(postgresql_connections, "ANSWER_S", 0.5)
+    try:
+        for pid in backends:
+            os.kill(pid, signal.SIGSTOP)
+        # The stopped connection is given up by the pool's ping, the new one over its statement.
+        with pytest.raises(SQLAlchemyError) as raised, engine.connect() as connection:
+            connection.exec_driver_sql("SELECT pg_sleep(60)")
+        assert failure_of(raised.value) is StoreFailure.UNAVAILABLE
+    finally:
+        for pid in backends:
+            os.kill(pid, signal.SIGCONT)
+    store.check()
+    engine.dispose()
+
+
+def test_postgresql_urls_take_the_driver_that_is_installed(postgresql_url: str) -> None:
+    url = Settings(database_url=postgresql_url).resolved_database_url
+    assert url.drivername == "postgresql+psycopg"
+    assert make_url(postgresql_url).database == url.database
+
+
+def test_a_full_sqlite_is_full(tmp_path: Path) -> None:
+    engine = open_engine(make_url(f"sqlite:///{tmp_path / 'prunus.sqlite3'}"))
+    with engine.connect() as connection:
+        connection.exec_driver_sql("PRAGMA max_page_count = 1")
+    with pytest.raises(SQLAlchemyError) as raised:
+        PlanStore(engine).add(ID, robot="tabletop", request="{}", answer="x" * 10_000_000)
+    assert failure_of(raised.value) is StoreFailure.FULL
+    assert ExecutionStore(engine).active() == []
+    assert PlanStore(engine).plan(ID) is None
+    engine.dispose()
