@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from bench.measure import QUANTILES, Row
 from bench.pictures import PICTURES, number
-from bench.registry import ALL_CORES, SUBJECTS, Subject
+from bench.registry import ALL_CORES, SHOWN, Subject
 from bench.results import read, rows_of
 
 ROOT: Final = Path(__file__).parents[1]
@@ -40,33 +40,31 @@ def page(results: Results) -> str:
     parts = [_HEAD, _summary(results)]
     drawn = [picture for picture in PICTURES if picture.draw(results) is not None]
     parts += [f"![{picture.caption}](pictures/{picture.file})\n" for picture in drawn]
-    parts += [_section(subject, results.get(name)) for name, subject in SUBJECTS.items()]
+    parts += [_section(subject, results.get(subject.name)) for subject in SHOWN]
     return "\n".join(parts)
 
 
 def _summary(results: Results) -> str:
     wanted = [
-        (SUBJECTS[name], row)
-        for name in SUBJECTS
-        if name in results
-        for row in rows_of(results[name])
+        row
+        for subject in SHOWN
+        if subject.name in results
+        for row in rows_of(results[subject.name])
         if row.wanted
     ]
-    reached = sum(bool(row.reached) for _, row in wanted)
+    reached = sum(bool(row.reached) for row in wanted)
     lines = [
         "## What was wanted\n",
         f"{reached} of {len(wanted)} figures are reached.{_reservations(results)}\n",
         "| what | value | wanted | |",
         "| --- | --- | --- | --- |",
     ]
-    lines += [
-        f"| {row.name} | {_value(row)} | {row.wanted} | {_verdict(row)} |" for _, row in wanted
-    ]
+    lines += [f"| {row.name} | {_value(row)} | {row.wanted} | {_verdict(row)} |" for row in wanted]
     return "\n".join([*lines, ""])
 
 
 def _reservations(results: Results) -> str:
-    missing = [f"`{name}`" for name in SUBJECTS if name not in results]
+    missing = [f"`{subject.name}`" for subject in SHOWN if subject.name not in results]
     quick = [f"`{name}`" for name, document in results.items() if document["quick"]]
     text = f" Not measured yet: {', '.join(missing)}." if missing else ""
     return text + (f" From quick runs only: {', '.join(quick)}." if quick else "")
@@ -75,7 +73,7 @@ def _reservations(results: Results) -> str:
 def _section(subject: Subject, document: dict[str, Any] | None) -> str:
     head = f"## {subject.title}\n"
     if document is None:
-        return f"{head}\nNot measured yet: `make bench ONLY={subject.name}`.\n"
+        return f"{head}\nNot measured yet: `{subject.command}`.\n"
     headings = ["what", "value", "wanted", "reached", *QUANTILES, "runs", "note"]
     lines = [
         head,
@@ -92,7 +90,7 @@ def _circumstances(subject: Subject, document: dict[str, Any]) -> str:
     cores = "every core" if subject.cores == ALL_CORES else "one core"
     versions = ", ".join(f"{name} {version}" for name, version in about["versions"].items())
     text = (
-        f"`make bench ONLY={subject.name}`, {about['date']}, {cores} of {about['processor']} "
+        f"`{subject.command}`, {about['date']}, {cores} of {about['processor']} "
         f"({about['cores']} cores, {about['memory_gib']} GiB, {about['system']}, load at the start "
         f"{about['load_average']}); Python {about['python']}, {versions}."
     )

@@ -20,11 +20,18 @@ class Subject:
         name: on the command line, of its file in `bench/subjects` and of its results.
         title: for people.
         cores: how many it may use; ALL_CORES or a number.
+        target: what make calls it, if it is none of `make bench`.
     """
 
     name: str
     title: str
     cores: int = ONE_CORE
+    target: str = ""
+
+    @property
+    def command(self) -> str:
+        """What measures it."""
+        return f"make {self.target or f'bench ONLY={self.name}'}"
 
     @property
     def measure(self) -> Callable[[bool], list[Row]]:
@@ -51,3 +58,9 @@ _ALL = (
 )
 
 SUBJECTS: Final[Mapping[str, Subject]] = MappingProxyType({one.name: one for one in _ALL})
+
+SERVICE: Final = Subject("service", "The service under load", ALL_CORES, "bench-service")
+"""Loaded from a second process, for more than half an hour; see `bench.service`."""
+
+SHOWN: Final = (*_ALL, SERVICE)
+"""What docs/benchmarks.md has."""

@@ -42,10 +42,11 @@ from bench.service.kill_load import (
 from bench.service.killed_service import KilledService
 
 SQLITE = "sqlite"
-# Of the moments of death: this share before the service listens, the others under load.
-EARLY_SHARE = 0.2
-EARLY_S = 2.0
-LATE_S = 3.0
+# The moments of death: some while it starts, some while its kernels warm up with requests waiting,
+# the most while it answers. Each at random within so many seconds.
+STARTING, WARMING, ANSWERING = "starting", "warming", "answering"
+SHARES = {STARTING: 0.15, WARMING: 0.15, ANSWERING: 0.7}
+WITHIN_S = {STARTING: 2.0, WARMING: 2.0, ANSWERING: 1.5}
 TIME_FACTOR = "8"
 FIRST_LINE_S = 60.0
 JOIN_S = 1800.0
@@ -99,7 +100,7 @@ def kill_rounds(trial: Trial) -> dict[str, Any]:
         _start_arm(stack, service.url, trial.folder)
         for client in clients:
             client.start()
-        violations, early = _deaths(trial, service, engine)
+        violations, deaths = _deaths(trial, service, engine)
         service.start()
         service.wait_until_healthy()
         stopping.set()
@@ -121,7 +122,7 @@ def kill_rounds(trial: Trial) -> dict[str, Any]:
         "database": make_url(url).get_backend_name(),
         "rounds": trial.rounds,
         "seed": trial.seed,
-        "killed_before_listening": early,
+        "killed_while": deaths,
         "answered": dict(Counter(one.kind for one in answered)),
         "sent_again": sum(one.attempts > 1 for one in answered),
         "answers_lost_and_replayed": sum(one.replayed for one in answered),
@@ -145,26 +146,29 @@ def _start_arm(stack: ExitStack, url: str, folder: Path) -> None:
     )  # fmt: skip
 
 
-def _deaths(trial: Trial, service: KilledService, engine: Engine) -> tuple[list[str], int]:
-    """Kill and start again; what was wrong with the parts of jobs, and deaths before listening."""
+def _deaths(
+    trial: Trial, service: KilledService, engine: Engine
+) -> tuple[list[str], dict[str, int]]:
+    """Kill and start again; what was wrong with the parts of jobs, and when the service died."""
     moments = random.Random(trial.seed)
     found: list[str] = []
     parts: Parts = {}
-    early = 0
+    deaths = dict.fromkeys(SHARES, 0)
     for number in range(trial.rounds):
         if number:
             service.start()
-        if number and moments.random() < EARLY_SHARE:
-            early += 1
-            time.sleep(moments.uniform(0, EARLY_S))
-        else:
+        (moment,) = moments.choices(list(SHARES), list(SHARES.values()))
+        if moment == WARMING:
             service.wait_until_healthy()
-            time.sleep(moments.uniform(0, LATE_S))
+        elif moment == ANSWERING:
+            service.wait_until_ready()
+        time.sleep(moments.uniform(0, WITHIN_S[moment]))
         service.kill()
+        deaths[moment] += 1
         now = stored_parts(engine)
         found += changed_parts(parts, now)
         parts = now
-    return found, early
+    return found, deaths
 
 
 def main() -> int:

@@ -17,7 +17,7 @@ from typing import Any, Final
 import orjson
 
 from bench.measure import Row, failed, row
-from bench.registry import ALL_CORES, Subject
+from bench.registry import SERVICE
 from bench.results import FOLDER, as_document, write
 from bench.service.batches import Batches
 from bench.service.client import Client
@@ -25,7 +25,6 @@ from bench.service.memory import sample, slope_kib_per_min
 from bench.service.mixed import Tally, mixed_load
 from solver.comparison.machine import machine
 
-SUBJECT: Final = Subject("service", "The service under load", ALL_CORES)
 SSAS_MS: Final = 150.0
 NCOS_OVERHEAD_PERCENT: Final = 15.0
 P99_MS: Final = 25.0
@@ -50,7 +49,7 @@ def main() -> int:
         rows = asyncio.run(_measure(pid, port, given))
     quick = given.mixed_s < 1800
     elapsed_s = time.perf_counter() - began
-    write(given.output, as_document(SUBJECT, rows, about, quick, elapsed_s))
+    write(given.output, as_document(SERVICE, rows, about, quick, elapsed_s))
     for line in rows:
         print(f"{line.name}: {line.value} {line.unit} {line.wanted} {line.reached} {line.note}")
     return any(line.reached is False for line in rows)
