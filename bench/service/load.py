@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -56,11 +56,15 @@ def main() -> int:
 
 
 @contextlib.contextmanager
-def live_server() -> Iterator[tuple[int, int]]:
-    """A service with an empty data folder, warm; its process id and port."""
+def live_server(settings: Mapping[str, str] | None = None) -> Iterator[tuple[int, int]]:
+    """A service with an empty data folder, warm; its process id and port.
+
+    Args:
+        settings: more of its environment.
+    """
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "app", "serve", "--port", "0", "--data-dir", folder]
-        environment = {**os.environ, "PRUNUS_LOG_LEVEL": "warning"}
+        environment = {**os.environ, "PRUNUS_LOG_LEVEL": "warning", **(settings or {})}
         process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
         try:
             assert process.stdout is not None

@@ -1,0 +1,173 @@
+"""`python -m bench.service.fuzz`: what the API description allows, and what it forbids, is sent.
+
+Schemathesis makes the requests from `/openapi.json` of a live server of its own and runs every
+check that it has on every answer. Two of its checks are told what this service means:
+
+- `positive_data_acceptance` takes a 422. A JSON schema cannot say all that a request must be (a
+  target beside an unknown robot, a lower limit above the upper one), so data that the schema
+  allows may well make no sense.
+- `not_a_server_error` takes a 503, as a status; `only_expected_503` then takes only the codes in
+  `EXPECTED_503`. They tell the truth here: no robot worker is connected, and the fuzzer fills the
+  lines of jobs and comparisons. Every other 5xx, a 507 too, is a finding.
+"""
+
+import argparse
+import sys
+import urllib.request
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import orjson
+from schemathesis import Case, CheckContext, Response, openapi
+from schemathesis.checks import CHECKS
+from schemathesis.config import SchemathesisConfig
+from schemathesis.engine import Status, from_schema
+from schemathesis.engine.events import FatalError, NonFatalError, ScenarioFinished
+from schemathesis.engine.recorder import ScenarioRecorder
+
+from app.schemas.problem_details import MEDIA_TYPE
+from bench.service.load import live_server
+
+EXPECTED_503: Final = ("no_worker", "jobs_full", "comparisons_full")
+PHASES: Final = ("examples", "coverage", "fuzzing", "stateful")
+EXAMPLES: Final = Path(__file__).parents[2] / "openapi" / "examples"
+ANSWER_S: Final = 120.0
+UNLIMITED: Final[Mapping[str, str]] = {
+    "PRUNUS_RATE_LIMIT_PER_S": "1000000",
+    "PRUNUS_RATE_BURST": "1000000",
+}
+"""Settings of the server: answers of 429 say nothing about the routes."""
+
+
+@dataclass
+class Fuzzed:
+    """What came of it.
+
+    Attributes:
+        answers: how often each route gave each status, by route ("POST /v1/plans").
+        findings: what went wrong, each kind once with a request that shows it.
+    """
+
+    answers: dict[str, Counter[int]] = field(default_factory=dict)
+    findings: dict[tuple[str, str, str], str] = field(default_factory=dict)
+
+
+def main() -> int:
+    """Prints the answers of each route and the findings; 1 if there is one."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=2000, help="fuzzed requests of a route")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--phases", nargs="+", choices=PHASES, default=PHASES)
+    given = parser.parse_args()
+    with live_server(UNLIMITED) as (_, port):
+        url = f"http://127.0.0.1:{port}"
+        fuzzed = fuzz(url, given.cases, seed=given.seed, phases=given.phases)
+    for route, statuses in sorted(fuzzed.answers.items()):
+        print(f"{route}: {statuses.total()} requests, {dict(sorted(statuses.items()))}")
+    for (route, check, title), request in fuzzed.findings.items():
+        print(f"\nFINDING {route}, {check}: {title}\n{request}")
+    total = sum(statuses.total() for statuses in fuzzed.answers.values())
+    print(f"\n{total} requests, {len(fuzzed.findings)} findings")
+    return 1 if fuzzed.findings else 0
+
+
+def fuzz(
+    url: str, cases: int, *, seed: int = 1, phases: tuple[str, ...] | list[str] = PHASES
+) -> Fuzzed:
+    """Fuzzes every route of the service there.
+
+    Args:
+        url: of the service, without a path.
+        cases: so many requests of each route are made up in the fuzzing phase; the number in
+            the others follows from the description.
+        seed: the same one makes the same requests.
+        phases: of `PHASES`.
+    """
+    config = SchemathesisConfig.from_dict({**_config(cases, seed, phases), "base-url": url})
+    fuzzed = Fuzzed()
+    CHECKS.register(only_expected_503)
+    try:
+        schema = openapi.from_dict(_description(url), config=config)
+        for event in from_schema(schema).execute():
+            if isinstance(event, ScenarioFinished):
+                _add(fuzzed, event.recorder)
+            elif isinstance(event, NonFatalError):
+                fuzzed.findings[event.label, "error", type(event.value).__name__] = str(event.value)
+            elif isinstance(event, FatalError):
+                raise event.exception
+    finally:
+        CHECKS.unregister(only_expected_503.__name__)
+    return fuzzed
+
+
+def only_expected_503(_: CheckContext, response: Response, case: Case[Any]) -> None:
+    """A check of Schemathesis: a 503 is a problem with one of the codes in `EXPECTED_503`."""
+    if response.status_code != 503:
+        return
+    assert response.headers["content-type"] == [MEDIA_TYPE], "the 503 is no problem"
+    code = orjson.loads(response.content)["type"].rpartition(":")[2]
+    assert code in EXPECTED_503, f"a 503 with the code {code}"
+
+
+def _description(url: str) -> dict[str, Any]:
+    with urllib.request.urlopen(f"{url}/openapi.json") as answer:
+        document: dict[str, Any] = orjson.loads(answer.read())
+    for (method, path), body in _examples().items():
+        content = document["paths"][path][method]["requestBody"]["content"]
+        content["application/json"]["example"] = body
+    return document
+
+
+def _examples() -> dict[tuple[str, str], Any]:
+    """Bodies that make sense; made up ones hardly do, and nothing behind 422 would be reached."""
+    plan = orjson.loads((EXAMPLES / "data_set_3.json").read_bytes())
+    quick = {**plan["options"], "method": "ssas"}
+    compared = {"scenario": "data-set-3", "methods": ["ssas"], "repeats": 1}
+    thinning = orjson.loads((EXAMPLES / "thinning_selection.json").read_bytes())
+    registration = orjson.loads((EXAMPLES / "frame_registration.json").read_bytes())
+    return {
+        ("post", "/v1/plans"): {**plan, "options": quick},
+        ("post", "/v1/comparisons"): compared,
+        ("post", "/v1/thinning-selections"): thinning,
+        ("post", "/v1/frames/{name}/registration"): registration,
+        ("put", "/v1/frames/{name}"): {
+            "position_m": [-0.25, 0.02, 0.45],
+            "quaternion_xyzw": [-0.5, 0.5, -0.5, 0.5],
+        },
+    }
+
+
+def _config(cases: int, seed: int, phases: tuple[str, ...] | list[str]) -> dict[str, Any]:
+    accepted = ["2xx", "3xx", "401", "403", "404", "409", "422", "429", "5xx"]
+    return {
+        "seed": seed,
+        "continue-on-failure": True,
+        "request-timeout": ANSWER_S,
+        "generation": {"max-examples": cases, "database": "none"},
+        "phases": {phase: {"enabled": phase in phases} for phase in PHASES},
+        "checks": {
+            "positive_data_acceptance": {"expected-statuses": accepted},
+            "not_a_server_error": {"expected-statuses": ["2xx", "3xx", "4xx", "503"]},
+        },
+    }
+
+
+def _add(fuzzed: Fuzzed, recorder: ScenarioRecorder) -> None:
+    for key, interaction in recorder.interactions.items():
+        route = recorder.cases[key].value.operation.label
+        status = 0 if interaction.response is None else interaction.response.status_code
+        fuzzed.answers.setdefault(route, Counter())[status] += 1
+    for key, checks in recorder.checks.items():
+        route = recorder.cases[key].value.operation.label
+        for check in checks:
+            if check.status is Status.FAILURE and check.failure_info is not None:
+                failure = check.failure_info.failure
+                found = f"{failure.message}\n{check.failure_info.code_sample}"
+                fuzzed.findings.setdefault((route, check.name, failure.title), found)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
