@@ -12,6 +12,8 @@ import httpx2
 
 HEALTHY_S = 600.0  # the first start compiles every kernel
 POLL_S = 0.02
+DATA = "data"
+"""The folder with the service's data, in the trial's."""
 
 
 class ServiceDied(Exception):
@@ -37,7 +39,7 @@ class KilledService:
     def start(self) -> None:
         """Begin a life; it is not healthy yet when this returns."""
         command = [sys.executable, "-m", "app", "serve", "--port", str(self._port)]
-        command += ["--data-dir", str(self._folder / "data")]
+        command += ["--data-dir", str(self._folder / DATA)]
         with self.log.open("ab") as log:
             self._process = subprocess.Popen(
                 command,

@@ -19,9 +19,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, create_engine, inspect, make_url
+from sqlalchemy import Engine, create_engine, inspect
 
 from app.processes import own_process
+from app.settings import Settings
 from bench.service.kill_checks import (
     Parts,
     changed_parts,
@@ -39,7 +40,7 @@ from bench.service.kill_load import (
     LoadClient,
     NeverGivingUp,
 )
-from bench.service.killed_service import KilledService
+from bench.service.killed_service import DATA, KilledService
 
 SQLITE = "sqlite"
 # The moments of death: some while it starts, some while its kernels warm up with requests waiting,
@@ -80,10 +81,12 @@ def kill_rounds(trial: Trial) -> dict[str, Any]:
         DatabaseNotEmpty: it has tables.
         ServiceDied: the service ended by itself.
     """
-    url = trial.database_url or f"sqlite:///{trial.folder / 'data' / 'prunus.sqlite3'}"
-    engine = create_engine(make_url(url))
+    # As the service reads it, which also says by which driver.
+    settings = Settings(database_url=trial.database_url, data_dir=trial.folder / DATA)
+    url = settings.resolved_database_url
+    engine = create_engine(url)
     if trial.database_url and inspect(engine).get_table_names():
-        raise DatabaseNotEmpty(make_url(url).render_as_string(hide_password=True))
+        raise DatabaseNotEmpty(url.render_as_string(hide_password=True))
     service = KilledService(trial.folder, trial.database_url)
     account, stopping = Account(), threading.Event()
     shared = (service.url, trial.seed, account, stopping)
@@ -119,7 +122,7 @@ def kill_rounds(trial: Trial) -> dict[str, Any]:
         violations += of_worker
         parts = len(stored_parts(engine))
     return {
-        "database": make_url(url).get_backend_name(),
+        "database": url.get_backend_name(),
         "rounds": trial.rounds,
         "seed": trial.seed,
         "killed_while": deaths,

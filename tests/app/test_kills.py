@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from sqlalchemy import URL
 
 from app.store import NewKey, PlanStore, new_entry, open_engine
@@ -10,8 +11,13 @@ from bench.service.kill_load import Answered
 from bench.service.kills import Trial, kill_rounds
 
 
-def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(tmp_path: Path) -> None:
-    report = kill_rounds(Trial(rounds=5, database_url="", folder=tmp_path, seed=1))
+@pytest.mark.parametrize("database", ["sqlite", "postgresql"])
+def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(
+    database: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    url = request.getfixturevalue("postgresql_url") if database == "postgresql" else ""
+    report = kill_rounds(Trial(rounds=5, database_url=url, folder=tmp_path, seed=1))
+    assert report["database"] == database
     assert report["violations"] == []
     assert sum(report["killed_while"].values()) == 5
     assert report["answered"]["plan"] >= 5
