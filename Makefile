@@ -17,7 +17,9 @@ test: $(VENV)/dev.stamp          ## set up, then every check and every test
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n 2 tests/solver tests/bench
-	$(BIN)/pytest tests --ignore=tests/solver --ignore=tests/bench
+	$(BIN)/pytest -n 2 --dist loadfile -m "not alone" tests/app tests/docs tests/contracts
+	$(BIN)/pytest -m alone tests/app tests/docs
+	$(BIN)/pytest tests/hardware
 
 serve: $(VENV)/run.stamp         ## the service, on loopback
 	@$(BIN)/prunus serve

@@ -12,6 +12,10 @@ Body = dict[str, Any]
 PNG = b"\x89PNG\r\n"
 
 
+# Robot time does not wait for a busy machine.
+pytestmark = pytest.mark.alone
+
+
 def test_demo_plans_executes_measures_and_writes_where_it_says(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -31,6 +31,9 @@ from tests.app.fake_worker import (
     worker,
 )
 
+# Robot time does not wait for a busy machine.
+pytestmark = pytest.mark.alone
+
 
 def test_a_service_that_is_killed_sends_nothing_again(tmp_path: Path) -> None:
     with running_server(tmp_path, PRUNUS_WORKERS="1") as first:

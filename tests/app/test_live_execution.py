@@ -32,6 +32,10 @@ LONG_S = 40
 SERVOS = (11, 21, 22, 31, 32, 41, 51, 61)
 
 
+# Robot time does not wait for a busy machine.
+pytestmark = pytest.mark.alone
+
+
 @dataclass
 class Rig:
     """A service, a simulated bus and a worker, each a process."""

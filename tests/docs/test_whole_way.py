@@ -13,6 +13,9 @@ import pytest
 from tests.app.conftest import REPOSITORY, running_server, wait_until
 from tests.docs.test_documents import ROOT, fences
 
+# Robot time does not wait for a busy machine.
+pytestmark = pytest.mark.alone
+
 START_S = 60
 
 
