@@ -140,8 +140,8 @@ class AccessGuardMiddleware:
             if not revoked and self._monotonic() - asked_at >= TRUSTED_S:
                 asked_at = self._monotonic()
                 try:
-                    revoked = await access.client(token) is None
-                except SQLAlchemyError:
+                    revoked = await access.client(token, for_stop=True) is None
+                except (SQLAlchemyError, TimeoutError):
                     # A store that is away revokes nothing: an arm may hang on this link.
                     return False
             return revoked

@@ -78,6 +78,8 @@ def create_app(settings: Settings) -> FastAPI:
         lifespan=_lifespan,
         # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
         docs_url=None,
+        # A client that does not follow redirects would take one for an answer to its batch.
+        redirect_slashes=False,
         redoc_url=None,
     )
     app.state.settings = settings

@@ -14,9 +14,11 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 from sqlalchemy import URL, make_url
+from sqlalchemy.exc import ArgumentError
 
 from app.browser_guard import is_loopback
 
+DATABASES: Final = ("sqlite", "postgresql", "postgres")
 # As browsers write it: lower case, and no path.
 ORIGIN: Final = re.compile(r"https?://([a-z0-9.-]+|\[[0-9a-f:.]+\])(:[0-9]{1,5})?")
 
@@ -82,6 +84,18 @@ class Settings(BaseSettings):
         if isinstance(given, str):
             return tuple(part.strip() for part in given.split(",") if part.strip())
         return given
+
+    @field_validator("database_url")
+    @classmethod
+    def _known_database(cls, url: str) -> str:
+        # No error repeats the URL, which may have a password.
+        try:
+            backend = make_url(url).get_backend_name() if url else "sqlite"
+        except (ArgumentError, ValueError):
+            raise ValueError("this is no URL of a database") from None
+        if backend not in DATABASES:
+            raise ValueError("databases are sqlite and postgresql")
+        return url
 
     @field_validator("cors_origins")
     @classmethod
@@ -152,5 +166,9 @@ def shown_settings(settings: Settings) -> dict[str, Any]:
     """Every setting by name, with passwords hidden."""
     values = settings.model_dump(mode="json")
     if settings.database_url:
-        values["database_url"] = settings.resolved_database_url.render_as_string(hide_password=True)
+        url = settings.resolved_database_url
+        # libpq takes passwords as parameters too.
+        hidden = {name: "***" for name in url.query if "password" in name.lower()}
+        shown = url.update_query_dict(hidden) if hidden else url
+        values["database_url"] = shown.render_as_string(hide_password=True)
     return values

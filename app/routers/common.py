@@ -56,6 +56,8 @@ async def json_body(request: Request) -> bytes:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type not in ("", "application/json"):
         raise ProblemError(415, "unsupported_media_type", "The body must be application/json.")
+    if request.headers.get("content-encoding", "identity").strip().lower() != "identity":
+        raise ProblemError(415, "unsupported_media_type", "The body must not be compressed.")
     return await request.body()
 
 

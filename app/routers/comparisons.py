@@ -46,7 +46,7 @@ def list_scenarios() -> Response:
             "model": ComparisonAnswer,
             "headers": CREATED_HEADERS,
         },
-        **problem_answers(413, 415, 422, 500, 503),
+        **problem_answers(408, 413, 415, 422, 500, 503),
     },
     openapi_extra=with_key(body_of(ComparisonRequest)),
 )

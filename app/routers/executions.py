@@ -29,7 +29,7 @@ router = APIRouter(prefix="/v1/executions", tags=["executions"])
             "model": ExecutionAnswer,
             "headers": CREATED_HEADERS,
         },
-        **problem_answers(404, 409, 413, 415, 422, 500, 503),
+        **problem_answers(404, 408, 409, 413, 415, 422, 500, 503),
     },
     openapi_extra=with_key(body_of(ExecutionRequest)),
 )

@@ -45,7 +45,7 @@ async def list_frames(request: Request) -> Response:
     responses={
         200: {"model": FrameAnswer, "description": "It replaces an earlier one of this name"},
         201: {"model": FrameAnswer, "headers": _LOCATION},
-        **problem_answers(409, 413, 415, 422, 500),
+        **problem_answers(408, 409, 413, 415, 422, 500),
     },
     openapi_extra=body_of(FrameRequest),
 )
@@ -71,7 +71,7 @@ async def put_frame(name: Name, request: Request) -> Response:
     status_code=201,
     responses={
         201: {"model": FrameAnswer, "headers": CREATED_HEADERS},
-        **problem_answers(409, 413, 415, 422, 500),
+        **problem_answers(408, 409, 413, 415, 422, 500),
     },
     openapi_extra=with_key(body_of(FrameRegistrationRequest)),
 )

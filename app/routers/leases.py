@@ -24,7 +24,7 @@ router = APIRouter(prefix="/v1/robots/{name}/lease", tags=["robots"])
             "model": LeaseAnswer,
             "headers": {"Location": {"schema": {"type": "string"}}},
         },
-        **problem_answers(404, 409, 413, 415, 422, 500),
+        **problem_answers(404, 408, 409, 413, 415, 422, 500),
     },
     openapi_extra=body_of(LeaseRequest),
 )
@@ -60,7 +60,7 @@ async def get_lease(name: str, request: Request) -> Response:
     "/{lease_id}",
     operation_id="renew_lease",
     summary="Keep control of a robot",
-    responses={200: {"model": LeaseAnswer}, **problem_answers(404, 413, 415, 422, 500)},
+    responses={200: {"model": LeaseAnswer}, **problem_answers(404, 408, 413, 415, 422, 500)},
     openapi_extra=body_of(LeaseRenewal),
 )
 async def renew_lease(name: str, lease_id: str, request: Request) -> Response:

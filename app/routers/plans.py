@@ -53,7 +53,7 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
             "headers": CREATED_HEADERS,
             "description": "Taken on as a job; Location has its progress",
         },
-        **problem_answers(413, 415, 422, 500, 503),
+        **problem_answers(408, 413, 415, 422, 500, 503),
     },
     openapi_extra=with_key({"parameters": [PREFER], **body_of(PlanRequest)}),
 )

@@ -17,7 +17,7 @@ router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"
     summary="Blossoms along branches to targets, by the 5-8 pattern",
     responses={
         200: {"model": ThinningSelectionAnswer},
-        **problem_answers(413, 415, 422, 500),
+        **problem_answers(408, 413, 415, 422, 500),
     },
     openapi_extra=body_of(ThinningSelectionRequest),
 )

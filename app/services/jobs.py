@@ -19,7 +19,8 @@ from app.services.job_process import JobProcess
 from app.services.measures import Measures
 from app.services.solving import LogOptions, SolverLost
 from app.services.store_calls import store_call
-from app.store import JobEnded, JobRow, JobStore, NewKey, new_entry
+from app.store import JobEnded, JobRow, JobStore, KeyTaken, NewKey, new_entry
+from app.store.failures import StoreBusy
 from app.store.jobs import CANCELED, FAILED
 from solver import Problem
 
@@ -126,8 +127,12 @@ class JobService:
                 request=request,
                 entry=lambda row: new_entry(key, 202, f"/v1/jobs/{job_id}", answer_to(row)),
             )
-        except BaseException:
+        except (StoreBusy, KeyTaken):
             del self._active[job_id]
+            raise
+        except BaseException:
+            # It may be stored all the same, and then its key answers for it.
+            self._queue.put_nowait(job_id)
             raise
         self._queue.put_nowait(job_id)
         return job
@@ -185,7 +190,8 @@ class JobService:
                 return
             if changed is None:
                 # Not this service's any more: it is just ending.
-                await asyncio.sleep(STORE_RETRY_S)
+                if await self._wait(asyncio.Event(), STORE_RETRY_S):
+                    return
                 continue
             while not changed.is_set():
                 if await self._wait(changed, heartbeat_s):

@@ -249,3 +249,12 @@ def test_wrong_http_method(server: Server) -> None:
 
 def test_service_survived_it_all(server: Server) -> None:
     assert server.client.get("/readyz").status_code == 200
+
+
+def test_a_slash_too_many_is_no_redirection(server: Server) -> None:
+    assert_problem(server.client.post("/v1/plans/", json={}), 404)
+
+
+def test_a_compressed_body_is_told_of(server: Server) -> None:
+    headers = {"Content-Type": "application/json", "Content-Encoding": "gzip"}
+    assert_problem(server.client.post("/v1/plans", content=b"{}", headers=headers), 415)

@@ -183,6 +183,8 @@ def test_the_document_is_one_for_generators() -> None:
                 assert parameter.get("description"), (where, parameter["name"])
             problems = [code for code in operation["responses"] if code >= "400"]
             assert problems, where
+            if "requestBody" in operation:
+                assert {"408", "413", "415", "422"} <= set(problems), where
             for code in problems:
                 assert "application/problem+json" in operation["responses"][code]["content"], where
 

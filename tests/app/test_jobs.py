@@ -1,3 +1,4 @@
+import asyncio
 import json
 import os
 import re
@@ -9,7 +10,14 @@ from typing import Any
 
 import httpx2
 import pytest
+from sqlalchemy import URL
+from sqlalchemy.exc import OperationalError
 
+from app.services.jobs import JobService
+from app.services.measures import NoMeasures
+from app.services.solving import LogOptions
+from app.store import JobStore, open_engine
+from solver import Problem, load_robot
 from tests.app.conftest import Server, assert_problem, running_server, wait_until
 from tests.solver.problems import random_targets
 
@@ -229,3 +237,30 @@ def test_a_job_goes_on_behind_its_last_part(tmp_path: Path, kind: signal.Signals
             assert entry["part"] not in stored, "stored again"
             stored.add(entry["part"])
     assert stored == set(range(8))
+
+
+def test_a_job_whose_commit_is_in_doubt_is_worked_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    engine = open_engine(URL.create("sqlite", database=str(tmp_path / "it.sqlite3")))
+    store = JobStore(engine)
+    add = store.add
+
+    def add_and_lose_the_answer(*args: Any, **kwargs: Any) -> None:
+        add(*args, **kwargs)
+        raise OperationalError("COMMIT", {}, Exception("the connection was lost"))
+
+    monkeypatch.setattr(store, "add", add_and_lose_the_answer)
+    problem = Problem(load_robot("tabletop"), random_targets(seed=61, count=2))
+
+    async def create() -> int:
+        service = JobService(
+            store, workers=1, most_waiting=3, logs=LogOptions(), measures=NoMeasures(),
+            stopping=asyncio.Event(),
+        )  # fmt: skip
+        with pytest.raises(OperationalError):
+            await service.create(problem, "{}", lambda _: "{}", None)
+        return service._queue.qsize()
+
+    assert asyncio.run(create()) == len(store.active()) == 1
+    engine.dispose()

@@ -1,7 +1,9 @@
+from urllib.parse import unquote
+
 import pytest
 from pydantic import ValidationError
 
-from app.settings import Settings
+from app.settings import Settings, shown_settings
 
 
 def test_origins_are_a_text_with_commas_in_the_environment(
@@ -25,3 +27,24 @@ def test_where_a_token_is_required() -> None:
     assert Settings(require_token=True).token_required
     for host in ("0.0.0.0", "::", "192.168.1.5", "arm.example"):
         assert Settings(host=host).token_required
+
+
+@pytest.mark.parametrize(
+    ("url", "shown"),
+    [
+        ("postgresql://u:pw@h/d", "postgresql+psycopg://u:***@h/d"),
+        ("postgres://h/d?password=pw", "postgresql+psycopg://h/d?password=***"),
+        ("postgresql://h/d?sslpassword=pw&x=1", "postgresql+psycopg://h/d?sslpassword=***&x=1"),
+    ],
+)
+def test_no_password_of_the_database_is_shown(url: str, shown: str) -> None:
+    text = shown_settings(Settings(database_url=url))["database_url"]
+    assert unquote(text) == shown
+
+
+@pytest.mark.parametrize("url", ["no url of pw", "mysql://u:pw@h/d", "oracle://h"])
+def test_other_databases_are_refused_without_repeating_them(url: str) -> None:
+    with pytest.raises(ValidationError) as raised:
+        Settings(database_url=url)
+    told = [entry["msg"] for entry in raised.value.errors()]
+    assert not any("pw" in line for line in told)
