@@ -118,6 +118,9 @@ def _description(url: str) -> dict[str, Any]:
     for (method, path), body in _examples().items():
         content = document["paths"][path][method]["requestBody"]["content"]
         content["application/json"]["example"] = body
+    for parameter in document["paths"]["/v1/plans"]["post"]["parameters"]:
+        if parameter["name"] == "Prefer":
+            parameter["example"] = "respond-async"  # there would be no job to ask for
     return document
 
 

@@ -65,15 +65,17 @@ def live_server(settings: Mapping[str, str] | None = None) -> Iterator[tuple[int
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "app", "serve", "--port", "0", "--data-dir", folder]
         environment = {**os.environ, "PRUNUS_LOG_LEVEL": "warning", **(settings or {})}
-        process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
-        try:
-            assert process.stdout is not None
-            url = process.stdout.readline().split()[-1]
-            _await_ready(url)
-            yield process.pid, int(url.rpartition(":")[2])
-        finally:
-            process.terminate()
-            process.wait(60)
+        with subprocess.Popen(
+            command, env=environment, stdout=subprocess.PIPE, text=True
+        ) as process:
+            try:
+                assert process.stdout is not None
+                url = process.stdout.readline().split()[-1]
+                _await_ready(url)
+                yield process.pid, int(url.rpartition(":")[2])
+            finally:
+                process.terminate()
+                process.wait(60)
 
 
 def _await_ready(url: str) -> None:
