@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from fastapi.routing import iter_route_contexts
-from starlette.routing import BaseRoute, compile_path
+from starlette.routing import BaseRoute, Mount, compile_path
 
 PLAN: Final = "plan"
 EXECUTE: Final = "execute"
@@ -70,7 +70,7 @@ ROUTES: Final[dict[tuple[str, str], Scopes]] = {
     ("GET", "/readyz"): OPEN,
     ("GET", "/openapi.json"): OPEN,
     ("GET", "/docs"): OPEN,
-    ("GET", "/docs/{path:path}"): OPEN,
+    ("GET", "/docs/files/{path:path}"): OPEN,
 }
 
 UNLIMITED: Final = (STOP, ("GET", "/healthz"), ("GET", "/readyz"))
@@ -111,7 +111,12 @@ def check_rows(routes: Iterable[BaseRoute]) -> None:
 def served_rows(routes: Iterable[BaseRoute]) -> list[tuple[str, str]]:
     """Method and path of every route that is served."""
     found = []
-    for route in iter_route_contexts(list(routes)):
+    listed = list(routes)
+    # A folder of files is one route for whatever lies below it.
+    found += [
+        ("GET", f"{route.path}/{{path:path}}") for route in listed if isinstance(route, Mount)
+    ]
+    for route in iter_route_contexts([route for route in listed if not isinstance(route, Mount)]):
         methods = getattr(route, "methods", None) or (WEBSOCKET,)
         found += [(method, str(route.path)) for method in methods if method != "HEAD"]
     return found

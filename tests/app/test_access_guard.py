@@ -104,7 +104,7 @@ def issued(store: TokenStore, *scopes: str) -> tuple[str, TokenRow]:
 
 def test_without_a_token_only_open_routes_answer(store: TokenStore) -> None:
     door = Door(store)
-    for path in ("/healthz", "/readyz", "/openapi.json", "/docs", "/docs/x.js"):
+    for path in ("/healthz", "/readyz", "/openapi.json", "/docs", "/docs/files/x.js"):
         assert door.status("GET", path) == 200
     for method, path in (("GET", ROBOTS), ("POST", PLANS), ("POST", STOP_PATH), ("GET", "/none")):
         assert door.status(method, path) == 401

@@ -2,6 +2,8 @@
 
 import pytest
 from fastapi import APIRouter
+from starlette.routing import Mount
+from starlette.staticfiles import StaticFiles
 
 from app.main import create_app
 from app.scopes import (
@@ -29,7 +31,7 @@ OPERATIONS = {
     for method, operation in operations.items()
 }
 # All that a stranger gets to see off loopback.
-HARMLESS = {"/healthz", "/readyz", "/openapi.json", "/docs", "/docs/{path:path}"}
+HARMLESS = {"/healthz", "/readyz", "/openapi.json", "/docs", "/docs/files/{path:path}"}
 
 
 def test_every_route_has_a_row() -> None:
@@ -48,6 +50,12 @@ def test_a_route_without_a_row_keeps_the_application_from_being_made() -> None:
 
     with pytest.raises(RouteWithoutScope, match="/v1/forgotten"):
         check_rows([*APP.routes, *router.routes])
+
+
+def test_folders_of_files_have_rows_too() -> None:
+    check_rows([Mount("/docs/files", StaticFiles(directory="."))])
+    with pytest.raises(RouteWithoutScope, match="/elsewhere"):
+        check_rows([Mount("/elsewhere", StaticFiles(directory="."))])
 
 
 def test_nothing_but_harmless_routes_is_open() -> None:
@@ -71,7 +79,7 @@ def test_whatever_changes_something_needs_more_than_any_token_but_a_stop() -> No
     [
         ("POST", "/v1/robots/a b/stop", STOP),
         ("HEAD", "/openapi.json", ("GET", "/openapi.json")),
-        ("GET", "/docs/assets/ui.js", ("GET", "/docs/{path:path}")),
+        ("GET", "/docs/files/ui.js", ("GET", "/docs/files/{path:path}")),
         ("GET", "/v1/robots/x/y/stop", None),
         ("POST", "/v1/robots/x/stop/", None),
         ("POST", "/v1/docs", None),
