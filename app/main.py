@@ -2,7 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from typing import Any
+from typing import Any, Final
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
@@ -210,11 +210,24 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
                 operation["responses"] |= {str(code): failed[code] for code in sorted(missing)}
             # FastAPI's own form of a validation error, which is never sent.
             _drop_stock_validation_error(operation["responses"])
+            for parameter in operation.get("parameters", ()):
+                if parameter["name"] in PATH_PARAMETERS:
+                    parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
             operation["responses"] |= {str(code): what for code, what in refused.items()}
     describe_access(document)
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
     return document
+
+
+PATH_PARAMETERS: Final = {
+    "plan_id": "the plan's id, as Location or the plan has it",
+    "job_id": "the job's id, as Location or the job has it",
+    "execution_id": "the execution's id, as Location or the execution has it",
+    "comparison_id": "the comparison's id, as Location or the comparison has it",
+    "lease_id": "the lease's id, which only its holder knows",
+    "name": "the robot's or the frame's name",
+}
 
 
 def _drop_stock_validation_error(responses: dict[str, Any]) -> None:

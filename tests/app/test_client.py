@@ -1,5 +1,6 @@
 """The client that the vision team generates, built and used against a live server."""
 
+import contextlib
 import importlib
 import json
 import os
@@ -54,12 +55,27 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     sys.path.remove(str(folder))
 
 
+@pytest.fixture
+def clients() -> Iterator[contextlib.ExitStack]:
+    with contextlib.ExitStack() as stack:
+        yield stack
+
+
 def module(name: str) -> ModuleType:
     return importlib.import_module(f"prunus_client.{name}")
 
 
-def test_plans_through_the_client(package: Path, server: Server) -> None:
-    models, client = module("models"), module("client").Client(base_url=server.url)
+@contextlib.contextmanager
+def client_of(server: Server) -> Iterator[Any]:
+    """A client of the generated package, whose connections are closed in the end."""
+    with module("client").Client(base_url=server.url) as client:
+        yield client
+
+
+def test_plans_through_the_client(
+    package: Path, server: Server, clients: contextlib.ExitStack
+) -> None:
+    models, client = module("models"), clients.enter_context(client_of(server))
     create, get = module("api.plans.create_plan"), module("api.plans.get_plan")
     body = json.loads((EXAMPLES / "data_set_3.json").read_text())
     body["options"]["method"] = "ssas"
@@ -82,8 +98,10 @@ def test_plans_through_the_client(package: Path, server: Server) -> None:
     assert refused.errors[0].pointer == "#/targets/0/position_m"
 
 
-def test_jobs_robots_and_selections_through_the_client(package: Path, server: Server) -> None:
-    models, client = module("models"), module("client").Client(base_url=server.url)
+def test_jobs_robots_and_selections_through_the_client(
+    package: Path, server: Server, clients: contextlib.ExitStack
+) -> None:
+    models, client = module("models"), clients.enter_context(client_of(server))
     request = models.PlanRequest.from_dict(json.loads((EXAMPLES / "data_set_3.json").read_text()))
     create = module("api.plans.create_plan")
     job = create.sync(client=client, body=request, prefer="respond-async")
@@ -97,7 +115,7 @@ def test_jobs_robots_and_selections_through_the_client(package: Path, server: Se
     chosen = module("api.thinning_selections.create_thinning_selection").sync(
         client=client, body=selection
     )
-    assert [target.id for target in chosen.targets] == ["1"]
+    assert [target.id for target in chosen.targets] == ["1", "4"]
 
 
 def test_what_is_new_breaks_nothing(package: Path, server: Server) -> None:

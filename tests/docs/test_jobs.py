@@ -3,12 +3,13 @@
 import json
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 
 from app.services.job_parts import PART_TARGETS
 from app.settings import Settings
-from tests.app.conftest import Server, wait_until
+from tests.app.conftest import running_server, wait_until
 from tests.docs.test_documents import ROOT, fences
 
 DOCUMENT = "docs/jobs.md"
@@ -16,20 +17,22 @@ ADDRESS = "http://127.0.0.1:8000"
 END_S = 120
 
 
-def test_its_command_begins_a_job(server: Server) -> None:
+def test_its_command_begins_a_job(tmp_path: Path) -> None:
     (command,) = fences(DOCUMENT, "sh")
-    run = subprocess.run(
-        command.replace(ADDRESS, server.url),
-        shell=True, capture_output=True, text=True, check=True, cwd=ROOT,
-    )  # fmt: skip
-    head, _, body = run.stdout.replace("\r", "").partition("\n\n")
-    assert re.match(r"HTTP/1\.1 202 ", head)
-    location = re.search(r"(?mi)^location: (/v1/jobs/\w+)$", head)
-    assert location is not None
-    assert location[1].endswith(json.loads(body)["id"])
-    wait_until(lambda: server.client.get(location[1]).json()["status"] == "completed", END_S)
-    plan = server.client.get(location[1].replace("jobs", "plans")).json()
-    assert plan["summary"]["planned"] == 5
+    with running_server(tmp_path, PRUNUS_WORKERS="1") as server:
+        run = subprocess.run(
+            command.replace(ADDRESS, server.url),
+            shell=True, capture_output=True, text=True, check=True, cwd=ROOT,
+        )  # fmt: skip
+        head, _, body = run.stdout.replace("\r", "").partition("\n\n")
+        assert re.match(r"HTTP/1\.1 202 ", head)
+        location = re.search(r"(?mi)^location: (/v1/jobs/\w+)$", head)
+        assert location is not None
+        path = location[1]
+        assert path.endswith(json.loads(body)["id"])
+        wait_until(lambda: server.client.get(path).json()["status"] == "completed", END_S)
+        plan = server.client.get(path.replace("jobs", "plans")).json()
+        assert plan["summary"]["planned"] == 5
 
 
 @pytest.mark.parametrize(
