@@ -75,7 +75,8 @@ def running_server(
     with subprocess.Popen(
         command,
         cwd=REPOSITORY,
-        env={**os.environ, **environment},
+        # One solver process is enough, and half the start-up.
+        env={"PRUNUS_WORKERS": "1", **os.environ, **environment},
         stdout=subprocess.PIPE,
         stderr=stderr,
         text=True,

@@ -10,9 +10,6 @@ from bench.service.kill_checks import changed_parts, check_rows
 from bench.service.kill_load import Answered
 from bench.service.kills import Trial, kill_rounds
 
-# Robot time does not wait for a busy machine.
-pytestmark = pytest.mark.alone
-
 
 @pytest.mark.parametrize("database", ["sqlite", "postgresql"])
 def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(

@@ -1,15 +1,10 @@
 import asyncio
 from urllib.parse import urlsplit
 
-import pytest
-
 from bench.service.client import Client
 from bench.service.memory import sample
 from bench.service.mixed import mixed_load
 from tests.app.conftest import Server
-
-# Robot time does not wait for a busy machine.
-pytestmark = pytest.mark.alone
 
 DURATION_S = 60
 MOST_GROWTH_KIB = 300 * 1024

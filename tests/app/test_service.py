@@ -65,12 +65,12 @@ def test_killed_workers_are_replaced(tmp_path: Path, request_body: Body) -> None
 
 
 def test_no_process_is_left_behind(tmp_path: Path) -> None:
-    with running_server(tmp_path / "interrupted") as server:
+    with running_server(tmp_path / "interrupted", PRUNUS_WORKERS="2") as server:
         workers = server.children()
         assert len(workers) == 2
     wait_until(lambda: not any(map(_lives, workers)), 10)
 
-    with running_server(tmp_path / "killed") as server:
+    with running_server(tmp_path / "killed", PRUNUS_WORKERS="2") as server:
         workers = server.children()
         server.process.kill()
         server.process.wait()
