@@ -71,12 +71,16 @@ class JobProcess:
     async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
         if self._pool is None:
             self._pool = await asyncio.to_thread(Pool, 1, self._logs, yield_to_others)
+        pool = self._pool
         try:
-            return await asyncio.wrap_future(self._pool.executor.submit(work, *arguments))
-        except (BrokenExecutor, RuntimeError) as error:
-            if isinstance(error, RuntimeError) and not isinstance(error, BrokenExecutor):
-                raise
+            return await asyncio.wrap_future(pool.executor.submit(work, *arguments))
+        except BrokenExecutor:
             await self.end()
+            raise SolverLost from None
+        except asyncio.CancelledError:
+            if self._pool is pool:
+                raise
+            # Not the caller was canceled: the process was ended before the work had begun.
             raise SolverLost from None
 
     async def end(self) -> None:

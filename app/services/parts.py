@@ -15,7 +15,7 @@ from solver.staged import Choice, plan_part
 
 @dataclass(frozen=True)
 class SolvedPart:
-    """Some targets of a batch.
+    """Some targets of a batch, for another process.
 
     Attributes:
         approaches: a JSON array.

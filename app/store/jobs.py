@@ -112,7 +112,19 @@ class JobStore:
             "request": request,
         }
         job = JobRow(
-            job_id, robot, QUEUED, True, targets, created_at, None, None, None, 0, 0, 0.0, 0.0
+            id=job_id,
+            robot=robot,
+            status=QUEUED,
+            active=True,
+            targets=targets,
+            created_at=created_at,
+            started_at=None,
+            ended_at=None,
+            detail=None,
+            planned=0,
+            infeasible=0,
+            total_effort=0.0,
+            elapsed_s=0.0,
         )
         with writing(self._engine).begin() as connection:
             insert_key(connection, entry(job))

@@ -1,6 +1,5 @@
 """The client that the vision team generates, built and used against a live server."""
 
-import contextlib
 import importlib
 import json
 import os
@@ -56,26 +55,17 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture
-def clients() -> Iterator[contextlib.ExitStack]:
-    with contextlib.ExitStack() as stack:
-        yield stack
+def client(package: Path, server: Server) -> Iterator[Any]:
+    with module("client").Client(base_url=server.url) as client:
+        yield client
 
 
 def module(name: str) -> ModuleType:
     return importlib.import_module(f"prunus_client.{name}")
 
 
-@contextlib.contextmanager
-def client_of(server: Server) -> Iterator[Any]:
-    """A client of the generated package, whose connections are closed in the end."""
-    with module("client").Client(base_url=server.url) as client:
-        yield client
-
-
-def test_plans_through_the_client(
-    package: Path, server: Server, clients: contextlib.ExitStack
-) -> None:
-    models, client = module("models"), clients.enter_context(client_of(server))
+def test_plans_through_the_client(client: Any) -> None:
+    models = module("models")
     create, get = module("api.plans.create_plan"), module("api.plans.get_plan")
     body = json.loads((EXAMPLES / "data_set_3.json").read_text())
     body["options"]["method"] = "ssas"
@@ -98,10 +88,8 @@ def test_plans_through_the_client(
     assert refused.errors[0].pointer == "#/targets/0/position_m"
 
 
-def test_jobs_robots_and_selections_through_the_client(
-    package: Path, server: Server, clients: contextlib.ExitStack
-) -> None:
-    models, client = module("models"), clients.enter_context(client_of(server))
+def test_jobs_robots_and_selections_through_the_client(client: Any) -> None:
+    models = module("models")
     request = models.PlanRequest.from_dict(json.loads((EXAMPLES / "data_set_3.json").read_text()))
     create = module("api.plans.create_plan")
     job = create.sync(client=client, body=request, prefer="respond-async")

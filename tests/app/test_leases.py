@@ -69,5 +69,7 @@ def test_only_its_holder_gives_it_back() -> None:
             leases.give_back("arm", wrong)
     with refused("not_found"):
         leases.give_back("other arm", lease.id)
+    assert leases.current("arm") is not None
     leases.give_back("arm", lease.id)
+    assert leases.current("arm") is None
     leases.check("arm", "")

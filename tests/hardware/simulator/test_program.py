@@ -167,6 +167,7 @@ def test_a_signal_ends_it_even_if_nobody_fetches_the_answers(start: Start) -> No
         os.write(client, bytes.fromhex("FF FF 0B 04 02 00 32 BC") * 500)
         process.terminate()
         finish(process)
+        assert process.returncode == 0
     finally:
         os.close(client)
 
