@@ -2,6 +2,7 @@
 
 import logging
 import sys
+from dataclasses import dataclass
 from typing import Any, Final
 
 import orjson
@@ -13,15 +14,24 @@ FORMATS: Final = (JSON, CONSOLE)
 LEVELS: Final = ("debug", "info", "warning", "error")
 
 
-def configure_logs(log_format: str, level: str) -> None:
+@dataclass(frozen=True)
+class LogOptions:
+    """How a process logs.
+
+    Attributes:
+        log_format: one of FORMATS.
+        level: one of LEVELS; what is below is dropped.
+    """
+
+    log_format: str = JSON
+    level: str = "info"
+
+
+def configure_logs(options: LogOptions) -> None:
     """Send everything that is logged in this process through one formatter.
 
     Uvicorn's loggers, warnings and whatever else uses `logging` come the same way. What is bound
     with structlog's context variables, such as the request's id, is on every line of its context.
-
-    Args:
-        log_format: one of FORMATS.
-        level: one of LEVELS; what is below is dropped.
     """
     before: list[Any] = [
         structlog.contextvars.merge_contextvars,
@@ -33,7 +43,7 @@ def configure_logs(log_format: str, level: str) -> None:
             [structlog.processors.CallsiteParameter.PROCESS]
         ),
     ]
-    if log_format == JSON:
+    if options.log_format == JSON:
         last: list[Any] = [
             structlog.processors.format_exc_info,
             structlog.processors.JSONRenderer(serializer=_to_json),
@@ -51,7 +61,7 @@ def configure_logs(log_format: str, level: str) -> None:
     )
     root = logging.getLogger()
     root.handlers[:] = [handler]
-    root.setLevel(level.upper())
+    root.setLevel(options.level.upper())
     logging.captureWarnings(True)
     for name, least in _CHATTY.items():
         logging.getLogger(name).setLevel(max(least, root.level))

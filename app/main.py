@@ -52,7 +52,7 @@ from app.services.idempotency import IdempotencyService
 from app.services.jobs import JobService
 from app.services.leases import LeaseService
 from app.services.links import LinkService
-from app.services.solving import LogOptions, SolvingService
+from app.services.solving import SolvingService
 from app.settings import Settings
 from app.store import (
     ComparisonStore,
@@ -153,13 +153,13 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         settings.workers,
         settings.most_waiting_plans,
         state.metrics,
-        LogOptions(settings.log_format, settings.log_level),
+        settings.log_options,
     )
     state.jobs = JobService(
         JobStore(engine),
         workers=settings.job_workers,
         most_waiting=settings.most_waiting_jobs,
-        logs=LogOptions(settings.log_format, settings.log_level),
+        logs=settings.log_options,
         measures=state.metrics,
         stopping=state.stopping,
     )
@@ -176,7 +176,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         await state.executions.close()
         await state.comparisons.close()
         await state.jobs.close()
-        await run_in_threadpool(state.solving.close)
+        await state.solving.close()
         await run_in_threadpool(engine.dispose)
 
 

@@ -96,7 +96,7 @@ def run_service(settings: Settings) -> None:
     if settings.token_required:
         _check_tokens(settings)
     listener = _bind(settings.host, settings.port)
-    configure_logs(settings.log_format, settings.log_level)
+    configure_logs(settings.log_options)
     app = create_app(settings)
     patience = Patience(settings.head_timeout_s, settings.write_timeout_s)
     config = uvicorn.Config(

@@ -17,6 +17,7 @@ from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
 from app.browser_guard import is_loopback
+from app.logs import LogOptions
 
 DATABASES: Final = ("sqlite", "postgresql", "postgres")
 # As browsers write it: lower case, and no path.
@@ -109,6 +110,11 @@ class Settings(BaseSettings):
     def token_required(self) -> bool:
         """Whether nothing but open routes answers without a token."""
         return self.require_token or not is_loopback(self.host)
+
+    @property
+    def log_options(self) -> LogOptions:
+        """How this service's processes log."""
+        return LogOptions(self.log_format, self.log_level)
 
     @property
     def resolved_database_url(self) -> URL:

@@ -33,7 +33,7 @@ async def get_readiness(request: Request) -> HealthAnswer:
         raise ProblemError(503, "stopping", "The service is stopping.", retry_after_s=RETRY_S)
     solving: SolvingService = request.app.state.solving
     store: PlanStore = request.app.state.store
-    if not await solving.is_ready():
+    if not solving.is_ready:
         raise ProblemError(503, "not_ready", "The solver is warming up.")
     try:
         await store_call(store.check)

@@ -16,7 +16,8 @@ from starlette.concurrency import run_in_threadpool
 from app.errors import ProblemError, invalid_request
 from app.reports.html import waiting_page
 from app.services.comparing import ComparisonOrder, prepare, read_progress
-from app.services.solving import SolverLost, SolvingService
+from app.services.solver_process import SolverLost
+from app.services.solving import SolvingService
 from app.services.store_calls import store_call
 from app.store import ComparisonStore, NewKey, new_entry
 from app.store.failures import cause_of

@@ -38,7 +38,8 @@ from app.services.execution_record import (
 )
 from app.services.leases import LeaseService
 from app.services.links import Link, LinkService
-from app.services.solving import SolverLost, SolvingService
+from app.services.solver_process import SolverLost
+from app.services.solving import SolvingService
 from app.services.store_calls import store_call
 from app.store import ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
 from hardware.clock import timestamp

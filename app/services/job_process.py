@@ -4,13 +4,15 @@ import asyncio
 import contextlib
 import os
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor
+from functools import partial
 from typing import Any, TypeVar
 
+from app.logs import LogOptions
 from app.services.job_parts import choose_for_job, load_job, plan_head, solve_part
 from app.services.measures import PlanFigures
 from app.services.parts import Totals
-from app.services.solving import LogOptions, Pool, SolverLost
+from app.services.solver_process import SolverLost, SolverProcess
+from app.services.solving import prepare
 from app.store import JobRow, JobWork, NewPart
 
 Result = TypeVar("Result")
@@ -19,12 +21,13 @@ NICENESS = 15
 """Added to the niceness of the service: a job takes what plans and the service itself leave."""
 
 
-def yield_to_others() -> None:
-    """Lower the priority of this process."""
+def prepare_for_jobs(logs: LogOptions) -> None:
+    """Lower the priority of this process, and make it ready to solve."""
     os.nice(NICENESS)
     with contextlib.suppress(AttributeError, OSError):
         # Batch work is not preferred after waking up; where there is no such class, niceness is it.
         os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+    prepare(logs)
 
 
 class JobProcess:
@@ -36,7 +39,7 @@ class JobProcess:
 
     def __init__(self, logs: LogOptions) -> None:
         self._logs = logs
-        self._pool: Pool | None = None
+        self._process: SolverProcess | None = None
 
     async def load(self, job_id: str, work: JobWork) -> str:
         """Make a job ready; what its batch decided as one, as text.
@@ -69,22 +72,16 @@ class JobProcess:
         return await self._run(plan_head, job.id, totals)
 
     async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
-        if self._pool is None:
-            self._pool = await asyncio.to_thread(Pool, 1, self._logs, yield_to_others)
-        pool = self._pool
+        if self._process is None:
+            self._process = SolverProcess(partial(prepare_for_jobs, self._logs))
         try:
-            return await asyncio.wrap_future(pool.executor.submit(work, *arguments))
-        except BrokenExecutor:
+            return await self._process.call(work, *arguments)
+        except SolverLost:
             await self.end()
-            raise SolverLost from None
-        except asyncio.CancelledError:
-            if self._pool is pool:
-                raise
-            # Not the caller was canceled: the process was ended before the work had begun.
-            raise SolverLost from None
+            raise
 
     async def end(self) -> None:
         """End the process at once, whatever it does; the next work starts another."""
-        pool, self._pool = self._pool, None
-        if pool is not None:
-            await asyncio.to_thread(pool.close)
+        process, self._process = self._process, None
+        if process is not None:
+            await asyncio.to_thread(process.end)

@@ -15,9 +15,10 @@ from typing import Final
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.errors import ProblemError
+from app.logs import LogOptions
 from app.services.job_process import JobProcess
 from app.services.measures import Measures
-from app.services.solving import LogOptions, SolverLost
+from app.services.solver_process import SolverLost
 from app.services.store_calls import store_call
 from app.store import JobEnded, JobRow, JobStore, KeyTaken, NewKey, new_entry
 from app.store.failures import StoreBusy

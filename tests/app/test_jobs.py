@@ -13,9 +13,9 @@ import pytest
 from sqlalchemy import URL
 from sqlalchemy.exc import OperationalError
 
+from app.logs import LogOptions
 from app.services.jobs import JobService
 from app.services.measures import NoMeasures
-from app.services.solving import LogOptions
 from app.store import JobStore, open_engine
 from solver import Problem, load_robot
 from tests.app.conftest import Server, assert_problem, running_server, wait_until

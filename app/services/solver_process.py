@@ -1,0 +1,135 @@
+"""A process that solves: one task at a time, and its death is noticed whenever it comes.
+
+The standard library's pool keeps both ends of the pipes to its processes open. When one of them is
+killed while it sends an answer, the pool waits for the rest of it for ever. Here the far end of a
+process's pipe is open in that process alone.
+"""
+
+import asyncio
+import multiprocessing
+import os
+import signal
+import threading
+import traceback
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from multiprocessing.connection import Connection
+from multiprocessing.reduction import ForkingPickler
+from queue import SimpleQueue
+from typing import Any, Final, TypeVar
+
+Result = TypeVar("Result")
+
+_READY: Final = (True, None)
+
+
+class SolverLost(Exception):
+    """A solver process died, or was ended, over what it was given or before."""
+
+
+class SolverProcess:
+    """Started at once; it ends with the process that started it, however that ends.
+
+    Args:
+        prepare: what it runs first; a function of a module, as it is sent there.
+    """
+
+    def __init__(self, prepare: Callable[[], None]) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._pipe, far_end = context.Pipe()
+        self._process = context.Process(target=_serve, args=(far_end, prepare), daemon=True)
+        self._process.start()
+        far_end.close()
+        # Sending and receiving block, so they have a thread; it is also what keeps tasks in order.
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="solver-process")
+        self._ready: Future[None] = self._thread.submit(self._receive)
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether it runs; one that just died may still be said to."""
+        return self._process.is_alive()
+
+    @property
+    def is_warm(self) -> bool:
+        """Whether it has been prepared."""
+        return self._ready.done() and self._ready.exception() is None
+
+    async def ready(self) -> None:
+        """Wait until it is prepared.
+
+        Raises:
+            SolverLost: it could not be, or died.
+        """
+        await asyncio.wrap_future(self._ready)
+
+    async def call(self, work: Callable[..., Result], *arguments: Any) -> Result:
+        """Run a function of a module there, after whatever was asked for before.
+
+        Raises:
+            SolverLost: the process is gone.
+            Exception: whatever `work` raises, with its place there as a note.
+        """
+        try:
+            task = self._thread.submit(self._call, work, arguments)
+        except RuntimeError:
+            raise SolverLost from None  # it was ended
+        return await asyncio.wrap_future(task)
+
+    def _call(self, work: Callable[..., Result], arguments: tuple[Any, ...]) -> Result:
+        try:
+            self._pipe.send((work, arguments))
+        except OSError:
+            raise SolverLost from None
+        result: Result = self._receive()
+        return result
+
+    def _receive(self) -> Any:
+        try:
+            succeeded, value = self._pipe.recv()
+        except (EOFError, OSError):
+            raise SolverLost from None
+        if not succeeded:
+            raise value
+        return value
+
+    def end(self) -> None:
+        """End it at once, whatever it does; this blocks until it is gone."""
+        self._process.kill()
+        self._process.join()
+        self._thread.shutdown()
+        self._pipe.close()
+
+
+def _serve(pipe: Connection, prepare: Callable[[], None]) -> None:
+    # Ctrl-C reaches the whole process group; the service decides when its processes end.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tasks: SimpleQueue[bytes] = SimpleQueue()
+    threading.Thread(target=_take, args=(pipe, tasks), daemon=True).start()
+    prepare()
+    pipe.send(_READY)
+    while True:
+        message = tasks.get()
+        try:
+            work, arguments = ForkingPickler.loads(message)
+            pipe.send((True, work(*arguments)))
+        except Exception as error:
+            pipe.send((False, _sendable(error)))
+
+
+def _sendable(error: Exception) -> Exception:
+    place = traceback.format_exc()
+    try:
+        ForkingPickler.loads(ForkingPickler.dumps(error))
+    except Exception:
+        error = RuntimeError(f"{type(error).__name__}: {error}")
+    error.add_note(place)
+    return error
+
+
+def _take(pipe: Connection, tasks: "SimpleQueue[bytes]") -> None:
+    """Read what comes, while it works as well: that is how it sees its service end."""
+    while True:
+        try:
+            tasks.put(pipe.recv_bytes())
+        except (EOFError, OSError):
+            os._exit(0)
