@@ -14,6 +14,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from app.browser_guard import is_loopback
 from app.connection import Patience, impatient_protocol
 from app.logs import configure_logs
+from app.long_lived import keep_for_good
 from app.main import create_app
 from app.processes import READY_LINE
 from app.settings import Settings
@@ -51,6 +52,7 @@ class _Server(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         self._loop = asyncio.get_running_loop()
         await super().startup(sockets)
+        keep_for_good()
         if self.started and sockets:
             host, port = sockets[0].getsockname()[:2]
             shown = f"[{host}]" if ":" in host else host

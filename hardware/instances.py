@@ -59,4 +59,5 @@ def load_instance(name: str) -> RobotInstance:
         raise UnknownRobot(name, known=instance_names())
     simulated = name not in robot_names()
     model = name.removesuffix(SIMULATED_SUFFIX) if simulated else name
-    return RobotInstance(replace(load_robot(model), name=name), model, simulated)
+    robot = load_robot(model)
+    return RobotInstance(replace(robot, name=name) if simulated else robot, model, simulated)

@@ -103,28 +103,31 @@ def in_answer_order(problem: Problem, approaches: Sequence[Approach]) -> tuple[A
 
 def choice_to_json(choice: Choice) -> str:
     """A choice as text that `choice_from_json` reads again, to the last bit of every number."""
+    # Almost all targets have the same rows, which are longer than all the rest of a stop.
+    numbers: dict[tuple[float, ...], int] = {}
     stops = [
         {
             "id": target_id,
-            "retreats_m": stop.task.retreats_m,
+            "retreats": numbers.setdefault(stop.task.retreats_m, len(numbers)),
             "candidate": asdict(stop.candidate),
             "arc": asdict(stop.arc),
             "angle_rad": stop.angle_rad,
         }
         for target_id, stop in choice.stops.items()
     ]
-    return json.dumps({"order": choice.order, "stops": stops})
+    return json.dumps({"order": choice.order, "retreats_m": list(numbers), "stops": stops})
 
 
 def choice_from_json(problem: Problem, text: str) -> Choice:
     """The choice for a problem that `choice_to_json` wrote."""
     read = json.loads(text)
+    retreats_m = [tuple(rows) for rows in read["retreats_m"]]
 
     def stop(entry: Mapping[str, Any]) -> Stop:
         task = approach_task(problem, problem.targets_by_id[entry["id"]], problem.start)
         candidate = Candidate(**entry["candidate"])
         return Stop(
-            replace(task, retreats_m=tuple(entry["retreats_m"])),
+            replace(task, retreats_m=retreats_m[entry["retreats"]]),
             replace(candidate, thinning_joints=tuple(candidate.thinning_joints)),
             Arc(**entry["arc"]),
             entry["angle_rad"],

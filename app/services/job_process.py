@@ -1,8 +1,6 @@
 """One process for jobs: at low priority, one job at a time, and ended at once to cancel."""
 
 import asyncio
-import contextlib
-import os
 from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
@@ -19,15 +17,6 @@ Result = TypeVar("Result")
 
 NICENESS = 15
 """Added to the niceness of the service: a job takes what plans and the service itself leave."""
-
-
-def prepare_for_jobs(logs: LogOptions) -> None:
-    """Lower the priority of this process, and make it ready to solve."""
-    os.nice(NICENESS)
-    with contextlib.suppress(AttributeError, OSError):
-        # Batch work is not preferred after waking up; where there is no such class, niceness is it.
-        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
-    prepare(logs)
 
 
 class JobProcess:
@@ -73,7 +62,7 @@ class JobProcess:
 
     async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
         if self._process is None:
-            self._process = SolverProcess(partial(prepare_for_jobs, self._logs))
+            self._process = SolverProcess(partial(prepare, self._logs), NICENESS)
         try:
             return await self._process.call(work, *arguments)
         except SolverLost:

@@ -6,6 +6,8 @@ process's pipe is open in that process alone.
 """
 
 import asyncio
+import contextlib
+import logging
 import multiprocessing
 import os
 import signal
@@ -16,11 +18,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from multiprocessing.connection import Connection
 from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
+
+logger = logging.getLogger(__name__)
 
 Result = TypeVar("Result")
-
-_READY: Final = (True, None)
 
 
 class SolverLost(Exception):
@@ -32,17 +34,18 @@ class SolverProcess:
 
     Args:
         prepare: what it runs first; a function of a module, as it is sent there.
+        niceness: added to that of this process, before anything is loaded there.
     """
 
-    def __init__(self, prepare: Callable[[], None]) -> None:
+    def __init__(self, prepare: Callable[[], None], niceness: int = 0) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, far_end = context.Pipe()
-        self._process = context.Process(target=_serve, args=(far_end, prepare), daemon=True)
+        self._process = context.Process(target=_serve, args=(far_end, niceness), daemon=True)
         self._process.start()
         far_end.close()
         # Sending and receiving block, so they have a thread; it is also what keeps tasks in order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="solver-process")
-        self._ready: Future[None] = self._thread.submit(self._receive)
+        self._ready: Future[None] = self._thread.submit(self._begin, prepare)
 
     @property
     def is_alive(self) -> bool:
@@ -75,22 +78,26 @@ class SolverProcess:
             raise SolverLost from None  # it was ended
         return await asyncio.wrap_future(task)
 
+    def _begin(self, prepare: Callable[[], None]) -> None:
+        try:
+            self._call(prepare, ())
+        except SolverLost:
+            raise
+        except Exception:
+            logger.exception("a solver process could not be prepared")
+            self._process.kill()
+            raise SolverLost from None
+
     def _call(self, work: Callable[..., Result], arguments: tuple[Any, ...]) -> Result:
         try:
             self._pipe.send((work, arguments))
-        except OSError:
-            raise SolverLost from None
-        result: Result = self._receive()
-        return result
-
-    def _receive(self) -> Any:
-        try:
             succeeded, value = self._pipe.recv()
         except (EOFError, OSError):
             raise SolverLost from None
         if not succeeded:
             raise value
-        return value
+        result: Result = value
+        return result
 
     def end(self) -> None:
         """End it at once, whatever it does; this blocks until it is gone."""
@@ -100,13 +107,16 @@ class SolverProcess:
         self._pipe.close()
 
 
-def _serve(pipe: Connection, prepare: Callable[[], None]) -> None:
+def _serve(pipe: Connection, niceness: int) -> None:
+    if niceness:
+        os.nice(niceness)
+        with contextlib.suppress(AttributeError, OSError):
+            # Batch work is not preferred after waking up; without such a class, niceness is it.
+            os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
     # Ctrl-C reaches the whole process group; the service decides when its processes end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     tasks: SimpleQueue[bytes] = SimpleQueue()
     threading.Thread(target=_take, args=(pipe, tasks), daemon=True).start()
-    prepare()
-    pipe.send(_READY)
     while True:
         message = tasks.get()
         try:

@@ -10,6 +10,7 @@ import orjson
 
 from app.errors import ProblemError
 from app.logs import LogOptions, configure_logs
+from app.long_lived import keep_for_good
 from app.services.comparing import ComparisonOrder, compare_to_bytes
 from app.services.measures import Measures, PlanFigures
 from app.services.motions import target_motions
@@ -57,6 +58,7 @@ def prepare(logs: LogOptions) -> None:
     from solver.warm_up import warm_up
 
     warm_up()
+    keep_for_good()
 
 
 class SolvingService:

@@ -37,7 +37,7 @@ class ComparisonStore:
             "updated_at": now,
             "document": document,
         }
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             insert_key(connection, key)
             connection.execute(insert(COMPARISONS), row)
 
@@ -51,7 +51,7 @@ class ComparisonStore:
             "page": page,
             "updated_at": datetime.now(UTC),
         }
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             connection.execute(
                 update(COMPARISONS).where(COMPARISONS.c.id == comparison_id).values(**changes)
             )

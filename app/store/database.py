@@ -1,5 +1,8 @@
 """The engine: SQLite made durable and safe for many processes, or PostgreSQL by URL."""
 
+import contextlib
+import threading
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -30,7 +33,7 @@ def open_engine(url: URL) -> Engine:
     """
     engine = create_store_engine(url)
     try:
-        with writing(engine).begin() as connection:
+        with writing(engine) as connection:
             migrate(connection)
     except BaseException:
         engine.dispose()
@@ -52,6 +55,7 @@ def create_store_engine(url: URL) -> Engine:
         hide_parameters=True,  # plans and hashes of tokens do not belong in a log
     )
     if sqlite:
+        engine.update_execution_options(prunus_turn=threading.Lock())
         event.listen(engine, "connect", _configure_sqlite)
         event.listen(engine, "begin", _begin_sqlite)
     else:
@@ -59,9 +63,22 @@ def create_store_engine(url: URL) -> Engine:
     return engine
 
 
-def writing(engine: Engine) -> Engine:
-    """The engine for transactions that write."""
-    return engine.execution_options(prunus_writes=True)
+@contextlib.contextmanager
+def writing(engine: Engine) -> Iterator[Connection]:
+    """A transaction that writes; it is durable when the block ends, and undone when that raises.
+
+    SQLite lets one write at a time, and has the others ask again after sleeps of up to 100 ms. So
+    those of one engine take turns before they ask; other processes are left to SQLite.
+    """
+    turn: threading.Lock | None = engine.get_execution_options().get("prunus_turn")
+    # Without a turn after that long, SQLite says what is the matter.
+    taken = turn is not None and turn.acquire(timeout=BUSY_TIMEOUT_MS / 1e3)
+    try:
+        with engine.execution_options(prunus_writes=True).begin() as connection:
+            yield connection
+    finally:
+        if turn is not None and taken:
+            turn.release()
 
 
 def _configure_sqlite(connection: Any, _: Any) -> None:

@@ -74,7 +74,7 @@ class ExecutionStore:
             "document": document,
         }
         try:
-            with writing(self._engine).begin() as connection:
+            with writing(self._engine) as connection:
                 insert_key(connection, key)
                 connection.execute(insert(EXECUTIONS), row)
         except IntegrityError as error:
@@ -89,7 +89,7 @@ class ExecutionStore:
         }
         if ended:
             changes["active_robot"] = None
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             connection.execute(
                 update(EXECUTIONS).where(EXECUTIONS.c.id == execution_id).values(**changes)
             )

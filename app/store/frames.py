@@ -73,7 +73,7 @@ class FrameStore:
     ) -> StoredFrame:
         now = datetime.now(UTC)
         there = select(FRAMES.c.created_at).where(FRAMES.c.name == name).with_for_update()
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             created_at = connection.execute(there).scalar_one_or_none()
             if created_at is not None:
                 text = document(utc(created_at), now)
@@ -106,5 +106,5 @@ class FrameStore:
 
     def remove(self, name: str) -> bool:
         """Whether there was a frame of that name; now there is none."""
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             return connection.execute(delete(FRAMES).where(FRAMES.c.name == name)).rowcount > 0

@@ -10,11 +10,12 @@ from app.store.database import writing
 from app.store.idempotency import NewEntry, insert_key
 from app.store.instants import utc
 from app.store.plans import ID
-from app.store.tables import JOBS, PLAN_PARTS, PLANS
+from app.store.tables import JOB_TEXTS, JOBS, PLAN_PARTS, PLANS
 
 QUEUED, RUNNING, COMPLETED, FAILED, CANCELED = (
     "queued", "running", "completed", "failed", "canceled",
 )  # fmt: skip
+REQUEST, CHOICE = "request", "choice"
 MOST_LISTED = 50
 
 
@@ -109,7 +110,6 @@ class JobStore:
             "active": True,
             "targets": targets,
             "created_at": created_at,
-            "request": request,
         }
         job = JobRow(
             id=job_id,
@@ -126,9 +126,10 @@ class JobStore:
             total_effort=0.0,
             elapsed_s=0.0,
         )
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             insert_key(connection, entry(job))
             connection.execute(insert(JOBS), row)
+            _keep_text(connection, job_id, REQUEST, request)
         return job
 
     def start(self, job_id: str) -> None:
@@ -138,7 +139,7 @@ class JobStore:
             JobEnded: it is not active any more.
         """
         began = func.coalesce(JOBS.c.started_at, datetime.now(UTC))
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             _change(connection, job_id, status=RUNNING, started_at=began)
 
     def save_choice(self, job_id: str, choice: str) -> None:
@@ -147,8 +148,9 @@ class JobStore:
         Raises:
             JobEnded: the job is not active any more.
         """
-        with writing(self._engine).begin() as connection:
-            _change(connection, job_id, choice=choice)
+        with writing(self._engine) as connection:
+            _change(connection, job_id, active=True)
+            _keep_text(connection, job_id, CHOICE, choice)
 
     def add_part(self, job_id: str, part: NewPart) -> None:
         """Keep a part.
@@ -156,7 +158,7 @@ class JobStore:
         Raises:
             JobEnded: the job is not active any more.
         """
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             _change(connection, job_id, active=True)
             connection.execute(insert(PLAN_PARTS), {"plan_id": job_id, **vars(part)})
 
@@ -175,7 +177,7 @@ class JobStore:
             "answer": answer,
             "in_parts": True,
         }
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             _change(connection, job_id, status=COMPLETED, active=False, ended_at=now)
             connection.execute(insert(PLANS), plan)
 
@@ -185,7 +187,7 @@ class JobStore:
         Raises:
             JobEnded: it had ended before.
         """
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             _change(
                 connection, job_id, status=status, active=False, detail=detail,
                 ended_at=datetime.now(UTC),
@@ -234,10 +236,14 @@ class JobStore:
             JobEnded: it is not active any more.
         """
         with self._engine.connect() as connection:
-            job = connection.execute(
-                select(JOBS.c.request, JOBS.c.choice).where(JOBS.c.id == job_id, JOBS.c.active)
-            ).one_or_none()
-            if job is None:
+            texts = dict(
+                connection.execute(
+                    select(JOB_TEXTS.c.kind, JOB_TEXTS.c.text)
+                    .join(JOBS, JOBS.c.id == JOB_TEXTS.c.job_id)
+                    .where(JOBS.c.id == job_id, JOBS.c.active)
+                ).all()
+            )
+            if not texts:
                 raise JobEnded(job_id)
             parts = PLAN_PARTS.c
             count, done = connection.execute(
@@ -247,7 +253,7 @@ class JobStore:
             reference = connection.execute(
                 select(parts.reference).where(parts.plan_id == job_id, parts.number == count - 1)
             ).scalar_one_or_none()
-        return JobWork(job.request, job.choice, count, done, reference)
+        return JobWork(texts[REQUEST], texts.get(CHOICE), count, done, reference)
 
 
 def _change(connection: Connection, job_id: str, **values: object) -> None:
@@ -256,3 +262,7 @@ def _change(connection: Connection, job_id: str, **values: object) -> None:
     )
     if changed.rowcount != 1:
         raise JobEnded(job_id)
+
+
+def _keep_text(connection: Connection, job_id: str, kind: str, text: str) -> None:
+    connection.execute(insert(JOB_TEXTS), {"job_id": job_id, "kind": kind, "text": text})

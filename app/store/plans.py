@@ -55,7 +55,7 @@ class PlanStore:
             "request": request,
             "answer": answer,
         }
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             insert_key(connection, key)
             connection.execute(insert(PLANS), row)
 

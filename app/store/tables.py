@@ -41,9 +41,17 @@ JOBS = Table(
     Column("started_at", DateTime(timezone=True), nullable=True),
     Column("ended_at", DateTime(timezone=True), nullable=True),
     Column("detail", Text, nullable=True),
-    Column("request", Text, nullable=False),
-    Column("choice", Text, nullable=True),
     Index("jobs_by_age", "created_at", "id"),
+)
+
+# `kind` is "request" or "choice", both JSON. They have megabytes, and SQLite would copy them with
+# every change of the job's row.
+JOB_TEXTS = Table(
+    "job_texts",
+    METADATA,
+    Column("job_id", String(32), primary_key=True),
+    Column("kind", String(16), primary_key=True),
+    Column("text", Text, nullable=False),
 )
 
 # `first` is the place of a part's first target in execution order; `reference` the posture that

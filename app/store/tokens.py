@@ -46,7 +46,7 @@ class TokenStore:
             "created_at": token.created_at,
             "revoked_at": token.revoked_at,
         }
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             connection.execute(insert(TOKENS), row)
 
     def token(self, token_id: str) -> TokenRow | None:
@@ -78,7 +78,7 @@ class TokenStore:
             .where(TOKENS.c.id == token_id, TOKENS.c.revoked_at.is_(None))
             .values(revoked_at=datetime.now(UTC))
         )
-        with writing(self._engine).begin() as connection:
+        with writing(self._engine) as connection:
             connection.execute(change)
         return self.token(token_id)
 

@@ -12,7 +12,7 @@ import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
-from functools import cached_property
+from functools import cached_property, lru_cache
 from importlib import resources
 from pathlib import Path
 from typing import Any, Final
@@ -227,8 +227,9 @@ def _model_files() -> dict[str, Path]:
     return files
 
 
+@lru_cache(maxsize=64)
 def parse_robot(document: bytes) -> Robot:
-    """A robot from the bytes of a model file.
+    """A robot from the bytes of a model file; the same bytes are parsed once.
 
     Raises:
         InvalidRobot: not TOML, fields missing or unknown, or values that make no sense.

@@ -26,10 +26,14 @@ def upgrade() -> None:
         sa.Column("started_at", sa.DateTime(timezone=True), nullable=True),
         sa.Column("ended_at", sa.DateTime(timezone=True), nullable=True),
         sa.Column("detail", sa.Text, nullable=True),
-        sa.Column("request", sa.Text, nullable=False),
-        sa.Column("choice", sa.Text, nullable=True),
     )
     op.create_index("jobs_by_age", "jobs", ["created_at", "id"])
+    op.create_table(
+        "job_texts",
+        sa.Column("job_id", sa.String(32), primary_key=True),
+        sa.Column("kind", sa.String(16), primary_key=True),
+        sa.Column("text", sa.Text, nullable=False),
+    )
     op.create_table(
         "plan_parts",
         sa.Column("plan_id", sa.String(32), primary_key=True),
@@ -72,7 +76,7 @@ def upgrade() -> None:
 
 def downgrade() -> None:
     """Drop them."""
-    for table in ("tokens", "frames", "idempotency_keys", "plan_parts", "jobs"):
+    for table in ("tokens", "frames", "idempotency_keys", "plan_parts", "job_texts", "jobs"):
         op.drop_table(table)
     with op.batch_alter_table("plans") as plans:
         plans.drop_column("in_parts")
