@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import HealthCheck, settings
 
+from bench.service.postgresql import INSTALL, PostgresqlServer, find_programs
 from solver import Robot, load_robot
-from tests.postgresql import INSTALL, PostgresqlServer, find_programs
 
 # The device of real servos, for tests/contracts/test_bus.py. The service has a setting of that
 # name, its HTTP port, so the services that tests start must not see it.

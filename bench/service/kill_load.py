@@ -20,7 +20,7 @@ ANSWER_S = 60.0
 GIVE_UP_S = 900.0
 SPREAD_M = 0.02
 BATCH_TARGETS = (1, 1, 1, 5, 20)
-JOB_TARGETS = (60, 150, 400)
+JOB_TARGETS = (60, 400, 1500)
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from app.settings import Settings
 from app.store import ExecutionStore, PlanStore, open_engine
 from app.store import postgresql as postgresql_connections
 from app.store.failures import StoreFailure, failure_of
+from bench.service.postgresql import PostgresqlServer
 from tests.app.conftest import REPOSITORY, assert_problem, running_server, wait_until
-from tests.postgresql import PostgresqlServer
 
 Body = dict[str, Any]
 ID = "0" * 32

@@ -1,4 +1,4 @@
-"""A PostgreSQL server of the tests' own, from the distribution's packages.
+"""A PostgreSQL server of one's own, from the distribution's packages.
 
 It refuses to run as root, so its programs then run as the user that its package made.
 """
