@@ -47,10 +47,9 @@ bench: $(BENCH_VENV)/bench.stamp ## every benchmark into bench/results, or some:
 bench-quick: $(BENCH_VENV)/bench.stamp ## the same with small sets, into build/bench
 	$(BENCH_BIN)/python -m bench --quick $(addprefix --only ,$(ONLY))
 
-bench-service: $(VENV)/dev.stamp ## a live service under load, fuzzing and kills
-	$(BIN)/python -m bench.service.load
-	$(BIN)/python -m bench.service.fuzz
-	$(BIN)/python -m bench.service.kills
+bench-service: $(VENV)/dev.stamp ## a live service under load, fuzzed and killed: hours
+	@failed=0; for part in load fuzz kills; do \
+		$(BIN)/python -m bench.service.$$part || failed=1; done; exit $$failed
 
 bench-page: $(BENCH_VENV)/bench.stamp ## docs/benchmarks.md and its plots, from bench/results
 	$(BENCH_BIN)/python -m bench.page

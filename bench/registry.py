@@ -59,8 +59,11 @@ _ALL = (
 
 SUBJECTS: Final[Mapping[str, Subject]] = MappingProxyType({one.name: one for one in _ALL})
 
+# A live server in a process of its own; hours together. See `bench.service`.
 SERVICE: Final = Subject("service", "The service under load", ALL_CORES, "bench-service")
-"""Loaded from a second process, for more than half an hour; see `bench.service`."""
+_LIVE = (ALL_CORES, SERVICE.target)
+FUZZING: Final = Subject("fuzzing", "The service against its description", *_LIVE)
+KILLS: Final = Subject("kills", "The service killed under load", *_LIVE)
 
-SHOWN: Final = (*_ALL, SERVICE)
+SHOWN: Final = (*_ALL, SERVICE, FUZZING, KILLS)
 """What docs/benchmarks.md has."""

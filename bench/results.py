@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from bench.measure import Row
 from bench.registry import Subject
+from solver.comparison.machine import machine
 
 FOLDER: Final = Path(__file__).parent / "results"
 
@@ -36,6 +37,17 @@ def write(folder: Path, document: dict[str, Any]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
     (folder / f"{document['subject']}.json").write_text(f"{text}\n", encoding="utf-8")
+
+
+def write_and_print(
+    folder: Path, subject: Subject, rows: list[Row], *, quick: bool, elapsed_s: float
+) -> int:
+    """Write a subject's results and print them; 1 if a figure is missed."""
+    write(folder, as_document(subject, rows, machine(), quick, elapsed_s))
+    for line in rows:
+        verdict = {True: "reached", False: "NOT REACHED", None: ""}[line.reached]
+        print(f"{line.name}: {line.value} {line.unit} {line.wanted} {verdict} {line.note}")
+    return int(any(line.reached is False for line in rows))
 
 
 def read(folder: Path = FOLDER) -> dict[str, dict[str, Any]]:

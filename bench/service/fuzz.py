@@ -13,6 +13,7 @@ check that it has on every answer. Two of its checks are told what this service 
 
 import argparse
 import sys
+import time
 import urllib.request
 from collections import Counter
 from collections.abc import Mapping
@@ -29,9 +30,13 @@ from schemathesis.engine.events import FatalError, NonFatalError, ScenarioFinish
 from schemathesis.engine.recorder import ScenarioRecorder
 
 from app.schemas.problem_details import MEDIA_TYPE
+from bench.measure import Row, row
+from bench.registry import FUZZING
+from bench.results import FOLDER, write_and_print
 from bench.service.load import live_server
 
 EXPECTED_503: Final = ("no_worker", "jobs_full", "comparisons_full")
+CASES: Final = 2000
 PHASES: Final = ("examples", "coverage", "fuzzing", "stateful")
 EXAMPLES: Final = Path(__file__).parents[2] / "openapi" / "examples"
 ANSWER_S: Final = 120.0
@@ -56,12 +61,14 @@ class Fuzzed:
 
 
 def main() -> int:
-    """Prints the answers of each route and the findings; 1 if there is one."""
+    """Prints the answers of each route and writes bench/results/fuzzing.json; 1 on a finding."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cases", type=int, default=2000, help="fuzzed requests of a route")
+    parser.add_argument("--cases", type=int, default=CASES, help="fuzzed requests of a route")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--phases", nargs="+", choices=PHASES, default=PHASES)
+    parser.add_argument("--output", type=Path, default=FOLDER)
     given = parser.parse_args()
+    began = time.perf_counter()
     with live_server(UNLIMITED) as (_, port):
         url = f"http://127.0.0.1:{port}"
         fuzzed = fuzz(url, given.cases, seed=given.seed, phases=given.phases)
@@ -69,9 +76,23 @@ def main() -> int:
         print(f"{route}: {statuses.total()} requests, {dict(sorted(statuses.items()))}")
     for (route, check, title), request in fuzzed.findings.items():
         print(f"\nFINDING {route}, {check}: {title}\n{request}")
+    rows = [_row(fuzzed, given.cases)]
+    quick = given.cases < CASES or set(given.phases) != set(PHASES)
+    elapsed_s = time.perf_counter() - began
+    return write_and_print(given.output, FUZZING, rows, quick=quick, elapsed_s=elapsed_s)
+
+
+def _row(fuzzed: Fuzzed, cases: int) -> Row:
     total = sum(statuses.total() for statuses in fuzzed.answers.values())
-    print(f"\n{total} requests, {len(fuzzed.findings)} findings")
-    return 1 if fuzzed.findings else 0
+    unexpected = sum(
+        count
+        for statuses in fuzzed.answers.values()
+        for status, count in statuses.items()
+        if status >= 500
+    )
+    note = f"{total} requests of {len(fuzzed.answers)} routes, {unexpected} answered with a 503"
+    name = f"findings of every check, {cases:,} cases a route"
+    return row(name, len(fuzzed.findings), "", at_most=0, note=note)
 
 
 def fuzz(

@@ -1,9 +1,11 @@
-"""`python -m bench.service.kills [--rounds N] [--database sqlite|URL]`: kill -9 under load.
+"""`python -m bench.service.kills [--rounds N] [--database NAME]...`: kill -9 under load.
 
 Clients post plans, jobs and executions, each with a key, and repeat a request until it is answered.
 Meanwhile the service and its solver processes are killed at random moments and started again. Then
 every answer is asked for again, and the rows and the worker's journal are counted. Prints a JSON
-object; the exit code is 1 if anything was lost, or done twice. The database must be empty.
+object a database; the exit code is 1 if anything was lost, or done twice. A database is `sqlite`,
+`postgresql` (a server of one's own, from the distribution's packages), or an SQLAlchemy URL of an
+empty one.
 """
 
 import argparse
@@ -23,6 +25,9 @@ from sqlalchemy import Engine, create_engine, inspect
 
 from app.processes import own_process
 from app.settings import Settings
+from bench.measure import Row, row
+from bench.registry import KILLS
+from bench.results import FOLDER, write_and_print
 from bench.service.kill_checks import (
     Parts,
     changed_parts,
@@ -41,8 +46,10 @@ from bench.service.kill_load import (
     NeverGivingUp,
 )
 from bench.service.killed_service import DATA, KilledService
+from bench.service.postgresql import INSTALL, PostgresqlServer, find_programs
 
-SQLITE = "sqlite"
+SQLITE, POSTGRESQL = "sqlite", "postgresql"
+ROUNDS = 100
 # The moments of death: some while it starts, some while its kernels warm up with requests waiting,
 # the most while it answers. Each at random within so many seconds.
 STARTING, WARMING, ANSWERING = "starting", "warming", "answering"
@@ -175,17 +182,45 @@ def _deaths(
 
 
 def main() -> int:
-    """Runs the rounds and prints the report."""
+    """Prints the reports and writes bench/results/kills.json."""
     parser = argparse.ArgumentParser(prog="bench.service.kills", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=100)
-    parser.add_argument("--database", default=SQLITE, help=f"{SQLITE}, or an SQLAlchemy URL")
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    parser.add_argument("--database", action="append", help=f"default: {SQLITE}, {POSTGRESQL}")
     parser.add_argument("--seed", type=int, default=0)
-    arguments = parser.parse_args()
-    url = "" if arguments.database == SQLITE else arguments.database
-    with tempfile.TemporaryDirectory(prefix="prunus-kills-") as folder:
-        report = kill_rounds(Trial(arguments.rounds, url, Path(folder), arguments.seed))
-    print(json.dumps(report, indent=2))
-    return 1 if report["violations"] else 0
+    parser.add_argument("--output", type=Path, default=FOLDER)
+    given = parser.parse_args()
+    began = time.perf_counter()
+    rows = []
+    for database in given.database or (SQLITE, POSTGRESQL):
+        with ExitStack() as stack:
+            url = _url(stack, database)
+            folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="prunus-kills-"))
+            report = kill_rounds(Trial(given.rounds, url, Path(folder), given.seed))
+        print(json.dumps(report, indent=2), flush=True)
+        rows.append(_row(report))
+    elapsed_s = time.perf_counter() - began
+    quick = given.rounds < ROUNDS
+    return write_and_print(given.output, KILLS, rows, quick=quick, elapsed_s=elapsed_s)
+
+
+def _url(stack: ExitStack, database: str) -> str:
+    if database == SQLITE:
+        return ""
+    if database != POSTGRESQL:
+        return database
+    programs = find_programs()
+    if programs is None:
+        sys.exit(f"PostgreSQL is not installed. {INSTALL}")
+    server = PostgresqlServer.create(programs)
+    stack.callback(server.remove)
+    return server.new_database()
+
+
+def _row(report: dict[str, Any]) -> Row:
+    name = f"batches lost or done twice in {report['rounds']} kills on {report['database']}"
+    told = ("answered", "sent_again", "answers_lost_and_replayed", "job_parts", "executions_begun")
+    note = "; ".join([*report["violations"], json.dumps({name: report[name] for name in told})])
+    return row(name, len(report["violations"]), "", at_most=0, note=note)
 
 
 if __name__ == "__main__":

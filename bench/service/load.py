@@ -19,12 +19,11 @@ import orjson
 from app.long_lived import keep_for_good
 from bench.measure import Row, failed, row
 from bench.registry import SERVICE
-from bench.results import FOLDER, as_document, write
+from bench.results import FOLDER, write_and_print
 from bench.service.batches import Batches
 from bench.service.client import Client
 from bench.service.memory import sample, slope_kib_per_min
 from bench.service.mixed import Tally, mixed_load
-from solver.comparison.machine import machine
 
 SSAS_MS: Final = 150.0
 NCOS_OVERHEAD_PERCENT: Final = 15.0
@@ -45,17 +44,14 @@ def main() -> int:
     parser.add_argument("--runs", type=int, default=15)
     parser.add_argument("--output", type=Path, default=FOLDER)
     given = parser.parse_args()
-    about, began = machine(), time.perf_counter()
+    began = time.perf_counter()
     # The load must not hold itself up: a collection of all that is imported here takes 0.1 s.
     keep_for_good()
     with live_server() as (pid, port):
         rows = asyncio.run(_measure(pid, port, given))
     quick = given.mixed_s < 1800
     elapsed_s = time.perf_counter() - began
-    write(given.output, as_document(SERVICE, rows, about, quick, elapsed_s))
-    for line in rows:
-        print(f"{line.name}: {line.value} {line.unit} {line.wanted} {line.reached} {line.note}")
-    return any(line.reached is False for line in rows)
+    return write_and_print(given.output, SERVICE, rows, quick=quick, elapsed_s=elapsed_s)
 
 
 @contextlib.contextmanager
