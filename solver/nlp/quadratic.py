@@ -7,9 +7,6 @@ from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
-import qpsolvers
-from qpsolvers.exceptions import QPError
-from scipy.sparse import csc_matrix
 
 from solver.robots.model import Array
 from solver.tolerances import OSQP_ITERATIONS, OSQP_STEP, OSQP_TOLERANCE, PIQP_ROOM, QP_TOLERANCE
@@ -57,6 +54,11 @@ def solve_quadratic(
     Returns:
         The answer; errors of the solver are its `detail`.
     """
+    # A quarter of a second at the start of every process, most of which solve nothing.
+    import qpsolvers
+    from qpsolvers.exceptions import QPError
+    from scipy.sparse import csc_matrix
+
     sparse = solver == "osqp"  # it knows no other matrices, and warns when it has to convert
     if solver == "piqp":
         h = np.where((h >= 0) & (h < PIQP_ROOM), PIQP_ROOM, h)
