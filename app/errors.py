@@ -3,6 +3,8 @@
 import http
 import logging
 from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import orjson
 from fastapi import FastAPI, Request, Response
@@ -45,6 +47,11 @@ class ProblemError(Exception):
         self.detail = detail
         self.faults = tuple(faults)
         self.retry_after_s = 1 if retry_after_s is None and status == 503 else retry_after_s
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # It may be raised in a solver process.
+        rebuilt = partial(ProblemError, faults=self.faults, retry_after_s=self.retry_after_s)
+        return rebuilt, (self.status, self.code, self.detail)
 
 
 def invalid_request(faults: Sequence[Fault]) -> ProblemError:

@@ -7,24 +7,27 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
-from app.errors import ProblemError, invalid_request
+from app.errors import ProblemError
 from app.routers.common import NDJSON, body_of, json_body, problem_answers, wants_lines
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.routers.jobs import job_json
 from app.schemas.answers import PlanAnswer
 from app.schemas.jobs import JobAnswer
 from app.schemas.requests import PlanRequest
+from app.services.batch_reading import (
+    LARGE_BODY_BYTES,
+    BatchLimits,
+    JobOrder,
+    PlanOrder,
+    read_batch,
+)
 from app.services.frames import FrameService
-from app.services.job_parts import resolved_request
 from app.services.jobs import JobService
 from app.services.plan_reading import plan_chunks, plan_lines
-from app.services.sent_frames import FindFrame, stored_request
 from app.services.solving import SolvingService
 from app.services.store_calls import store_call
-from app.services.wire import parse_request, problem_from_wire
 from app.settings import Settings
 from app.store import NewKey, PlanStore, new_entry
-from solver import Fault, Problem
 
 RESPOND_ASYNC: Final = "respond-async"
 PREFER: Final = {
@@ -73,23 +76,19 @@ async def create_plan(request: Request) -> Response:
 
 
 async def _create(request: Request, body: bytes, key: NewKey | None) -> Response:
-    settings: Settings = request.app.state.settings
-    frames: FrameService = request.app.state.frames
-    problem, normalised = await run_in_threadpool(
-        _read, body, settings.job_targets_limit, frames.transform
-    )
     preferred = prefers_async(request)
-    if preferred or len(problem.targets) > settings.sync_targets_limit:
-        return await _create_job(request, problem, normalised, key, preferred)
+    order = await _read(request, body, preferred)
+    if isinstance(order, JobOrder):
+        return await _create_job(request, order, key, preferred)
     plan_id = uuid.uuid4().hex
     location = f"/v1/plans/{plan_id}"
     solving: SolvingService = request.app.state.solving
-    answer = await solving.solve(problem, plan_id)
+    answer = await solving.solve(order.problem, plan_id)
     await store_call(
         _store(request).add,
         plan_id,
-        robot=problem.robot.name,
-        request=normalised,
+        robot=order.problem.robot.name,
+        request=order.request,
         answer=answer.decode(),
         key=new_entry(key, 201, location),
     )
@@ -102,11 +101,10 @@ async def _create(request: Request, body: bytes, key: NewKey | None) -> Response
 
 
 async def _create_job(
-    request: Request, problem: Problem, normalised: str, key: NewKey | None, preferred: bool
+    request: Request, order: JobOrder, key: NewKey | None, preferred: bool
 ) -> Response:
     jobs: JobService = request.app.state.jobs
-    resolved = await run_in_threadpool(resolved_request, normalised, problem)
-    job = await jobs.create(problem, resolved, job_json, key)
+    job = await jobs.create(order, job_json, key)
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if preferred:
         headers["Preference-Applied"] = RESPOND_ASYNC
@@ -119,12 +117,14 @@ def prefers_async(request: Request) -> bool:
     return any(entry.partition(";")[0].strip().lower() == RESPOND_ASYNC for entry in preferences)
 
 
-def _read(body: bytes, targets_limit: int, find_frame: FindFrame) -> tuple[Problem, str]:
-    request = parse_request(body)
-    if len(request.targets) > targets_limit:
-        raise invalid_request([Fault(("targets",), f"more than {targets_limit} targets")])
-    problem = problem_from_wire(request, find_frame)
-    return problem, stored_request(request, problem)
+async def _read(request: Request, body: bytes, preferred: bool) -> PlanOrder | JobOrder:
+    settings: Settings = request.app.state.settings
+    frames: FrameService = request.app.state.frames
+    limits = BatchLimits(settings.sync_targets_limit, settings.job_targets_limit)
+    if len(body) <= LARGE_BODY_BYTES:
+        return await run_in_threadpool(read_batch, body, limits, preferred, frames.transform)
+    solving: SolvingService = request.app.state.solving
+    return await solving.read(body, limits, preferred, await store_call(frames.transforms))
 
 
 def _stored_answer(request: Request, plan_id: str) -> str | None:

@@ -109,10 +109,12 @@ class FrameService:
     def transform(self, name: str) -> RigidTransform | None:
         """Where a frame stands in the base, if there is one of that name."""
         document = self._find(name)
-        if document is None:
-            return None
-        pose = orjson.loads(document)
-        return RigidTransform(tuple(pose["position_m"]), tuple(pose["quaternion_xyzw"]))
+        return None if document is None else _transform(orjson.loads(document))
+
+    def transforms(self) -> dict[str, RigidTransform]:
+        """Where every frame stands, by name."""
+        frames = [orjson.loads(document) for document in self._store.documents()]
+        return {frame["name"]: _transform(frame) for frame in frames}
 
     def _find(self, name: str) -> str | None:
         return self._store.document(name) if NAME.fullmatch(name) else None
@@ -176,6 +178,10 @@ def _reach_m(robot: str | MISSING) -> float:
     except UnknownRobot as error:
         detail = f"unknown robot; known: {', '.join(error.known)}"
         raise invalid_request([Fault(("robot",), detail)]) from None
+
+
+def _transform(pose: dict[str, Any]) -> RigidTransform:
+    return RigidTransform(tuple(pose["position_m"]), tuple(pose["quaternion_xyzw"]))
 
 
 def _longest_reach_m(robot: Robot) -> float:

@@ -16,6 +16,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from app.errors import ProblemError
 from app.logs import LogOptions
+from app.services.batch_reading import JobOrder
 from app.services.job_process import JobProcess
 from app.services.measures import Measures
 from app.services.solver_process import SolverLost
@@ -23,7 +24,6 @@ from app.services.store_calls import store_call
 from app.store import JobEnded, JobRow, JobStore, KeyTaken, NewKey, new_entry
 from app.store.failures import StoreBusy
 from app.store.jobs import CANCELED, FAILED
-from solver import Problem
 
 logger = logging.getLogger(__name__)
 
@@ -92,16 +92,14 @@ class JobService:
 
     async def create(
         self,
-        problem: Problem,
-        request: str,
+        order: JobOrder,
         answer_to: Callable[[JobRow], str],
         key: NewKey | None,
     ) -> JobRow:
         """Take on a job; it is stored as queued when this returns.
 
         Args:
-            problem: what is asked.
-            request: the same with every default filled in, JSON.
+            order: what is asked.
             answer_to: the body of the answer, which is kept under the key.
             key: that it was asked for under, if any.
 
@@ -123,9 +121,9 @@ class JobService:
             job = await store_call(
                 self._store.add,
                 job_id,
-                robot=problem.robot.name,
-                targets=len(problem.targets),
-                request=request,
+                robot=order.robot,
+                targets=order.targets,
+                request=order.request,
                 entry=lambda row: new_entry(key, 202, f"/v1/jobs/{job_id}", answer_to(row)),
             )
         except (StoreBusy, KeyTaken):

@@ -1,7 +1,8 @@
 """Solving in other processes, so that the event loop stays free and a crash stays outside."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import asynccontextmanager
 from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
@@ -11,6 +12,7 @@ import orjson
 from app.errors import ProblemError
 from app.logs import LogOptions, configure_logs
 from app.long_lived import keep_for_good
+from app.services.batch_reading import BatchLimits, JobOrder, PlanOrder, read_batch
 from app.services.comparing import ComparisonOrder, compare_to_bytes
 from app.services.measures import Measures, PlanFigures
 from app.services.motions import target_motions
@@ -28,6 +30,7 @@ from app.services.solver_process import SolverLost
 from app.services.wire import plan_to_wire
 from hardware.messages import Failure
 from solver import Problem, solve
+from solver.frames import RigidTransform
 from solver.many_targets import plans_together
 from solver.staged import choose
 
@@ -95,13 +98,21 @@ class SolvingService:
         Raises:
             ProblemError: 503, the worker died over it, or too many are waiting.
         """
+        async with self._place():
+            answer, figures = await self._solve(problem, plan_id)
+        self._measures.solved(figures)
+        return answer
+
+    @asynccontextmanager
+    async def _place(self) -> AsyncIterator[None]:
+        """One of the places for batches; what ends the solver over it is told as a problem."""
         if self._solving >= self._workers + self._most_waiting:
             raise ProblemError(
                 503, "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
             )
         self._solving += 1
         try:
-            answer, figures = await self._solve(problem, plan_id)
+            yield
         except SolverLost:
             raise ProblemError(
                 503, "solver_unavailable", "The solver was lost; it has been started again."
@@ -111,8 +122,6 @@ class SolvingService:
             raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
         finally:
             self._solving -= 1
-        self._measures.solved(figures)
-        return answer
 
     async def _solve(self, problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
         independent = problem.options.order == "independent" and plans_together(problem)
@@ -137,6 +146,22 @@ class SolvingService:
 
     async def _share(self, share: Problem) -> SolvedPart:
         return await self._run(solve_share, share)
+
+    async def read(
+        self,
+        body: bytes,
+        limits: BatchLimits,
+        as_job: bool,
+        frames: Mapping[str, RigidTransform],
+    ) -> PlanOrder | JobOrder:
+        """What a large body asks for; see `app.services.batch_reading.read_batch`.
+
+        Raises:
+            ProblemError: 422, the request makes no sense; 503, the worker died over it, or too
+                many are waiting.
+        """
+        async with self._place():
+            return await self._run(read_batch, body, limits, as_job, frames.get)
 
     async def motions(
         self, request: str, answer: str, execution_id: str

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import orjson
-from sqlalchemy import Engine, Table, select
+from sqlalchemy import Engine, Table, func, select
 
 from app.store.tables import EXECUTIONS, IDEMPOTENCY_KEYS, JOBS, PLAN_PARTS, PLANS
 from bench.service.kill_load import ROBOT, Answered, NeverGivingUp
@@ -25,6 +25,12 @@ def stored_parts(engine: Engine) -> Parts:
             (row.plan_id, row.number): hashlib.sha256(repr(tuple(row)).encode()).hexdigest()
             for row in connection.execute(query)
         }
+
+
+def count_parts(engine: Engine) -> int:
+    """How many parts of jobs are stored."""
+    with engine.connect() as connection:
+        return connection.scalar(select(func.count()).select_from(PLAN_PARTS)) or 0
 
 
 def changed_parts(before: Parts, after: Parts) -> list[str]:

@@ -35,6 +35,7 @@ from bench.service.kill_checks import (
     check_jobs,
     check_rows,
     check_worker,
+    count_parts,
     stored_parts,
 )
 from bench.service.kill_load import (
@@ -50,11 +51,14 @@ from bench.service.postgresql import INSTALL, PostgresqlServer, find_programs
 
 SQLITE, POSTGRESQL = "sqlite", "postgresql"
 ROUNDS = 100
-# The moments of death: some while it starts, some while its kernels warm up with requests waiting,
-# the most while it answers. Each at random within so many seconds.
-STARTING, WARMING, ANSWERING = "starting", "warming", "answering"
-SHARES = {STARTING: 0.15, WARMING: 0.15, ANSWERING: 0.7}
-WITHIN_S = {STARTING: 2.0, WARMING: 2.0, ANSWERING: 1.5}
+# The moments of death: while it starts, while its kernels warm up with requests waiting, while it
+# answers, and when it has just stored a part of a job, of which a short life sees none: the process
+# for jobs starts last. Each at random within so many seconds.
+STARTING, WARMING, ANSWERING, BETWEEN_PARTS = "starting", "warming", "answering", "between_parts"
+SHARES = {STARTING: 0.1, WARMING: 0.1, ANSWERING: 0.4, BETWEEN_PARTS: 0.4}
+WITHIN_S = {STARTING: 2.0, WARMING: 2.0, ANSWERING: 1.5, BETWEEN_PARTS: 0.3}
+PART_S = 60.0
+PART_POLL_S = 0.02
 TIME_FACTOR = "8"
 FIRST_LINE_S = 60.0
 JOIN_S = 1800.0
@@ -172,6 +176,9 @@ def _deaths(
             service.wait_until_healthy()
         elif moment == ANSWERING:
             service.wait_until_ready()
+        elif moment == BETWEEN_PARTS:
+            service.wait_until_healthy()
+            _wait_for_part(engine, found)
         time.sleep(moments.uniform(0, WITHIN_S[moment]))
         service.kill()
         deaths[moment] += 1
@@ -179,6 +186,15 @@ def _deaths(
         found += changed_parts(parts, now)
         parts = now
     return found, deaths
+
+
+def _wait_for_part(engine: Engine, found: list[str]) -> None:
+    before, deadline = count_parts(engine), time.monotonic() + PART_S
+    while count_parts(engine) == before:
+        if time.monotonic() > deadline:
+            found.append(f"no part of a job was stored in {PART_S:g} s")
+            return
+        time.sleep(PART_POLL_S)
 
 
 def main() -> int:

@@ -14,10 +14,10 @@ from sqlalchemy import URL
 from sqlalchemy.exc import OperationalError
 
 from app.logs import LogOptions
+from app.services.batch_reading import JobOrder
 from app.services.jobs import JobService
 from app.services.measures import NoMeasures
 from app.store import JobStore, open_engine
-from solver import Problem, load_robot
 from tests.app.conftest import Server, assert_problem, running_server, wait_until
 from tests.solver.problems import random_targets
 
@@ -251,7 +251,6 @@ def test_a_job_whose_commit_is_in_doubt_is_worked_on(
         raise OperationalError("COMMIT", {}, Exception("the connection was lost"))
 
     monkeypatch.setattr(store, "add", add_and_lose_the_answer)
-    problem = Problem(load_robot("tabletop"), random_targets(seed=61, count=2))
 
     async def create() -> int:
         service = JobService(
@@ -259,7 +258,7 @@ def test_a_job_whose_commit_is_in_doubt_is_worked_on(
             stopping=asyncio.Event(),
         )  # fmt: skip
         with pytest.raises(OperationalError):
-            await service.create(problem, "{}", lambda _: "{}", None)
+            await service.create(JobOrder("tabletop", 2, "{}"), lambda _: "{}", None)
         return service._queue.qsize()
 
     assert asyncio.run(create()) == len(store.active()) == 1
