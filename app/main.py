@@ -226,7 +226,7 @@ PATH_PARAMETERS: Final = {
     "execution_id": "the execution's id, as Location or the execution has it",
     "comparison_id": "the comparison's id, as Location or the comparison has it",
     "lease_id": "the lease's id, which only its holder knows",
-    "name": "the robot's or the frame's name",
+    "name": "the robot's name, one of GET /v1/robots",
 }
 
 

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import MISSING
 
 from app.routers.common import problem_answers
-from app.schemas.answers import (
+from app.schemas.robots import (
     JointAnswer,
     RobotAnswer,
     RobotsAnswer,

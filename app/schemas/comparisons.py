@@ -1,13 +1,13 @@
-"""Bodies of comparisons and scenarios.
+"""Bodies of comparisons and scenarios; `app.services.comparisons` makes the answers.
 
-`app.reports.wire` and `app.services.comparisons` make the answers. Clients must expect new fields
-and new values of every status and name.
+Clients must expect new fields and new values of every status and name.
 """
 
 from typing import Annotated
 
 from pydantic import MISSING, BaseModel, Field
 
+from app.schemas.comparison_results import ComparisonResultAnswer
 from app.schemas.requests import StrictBody
 
 
@@ -16,142 +16,55 @@ class ComparisonRequest(StrictBody):
 
     scenario: str = Field(description="a name of GET /v1/scenarios")
     methods: Annotated[list[str], Field(fail_fast=True)] | MISSING = Field(
-        default=MISSING, description="default: the scenario's own choice"
+        default=MISSING,
+        description="names of methods of the scenario, at least one; default: its own choice",
+        json_schema_extra={"minItems": 1},
     )
     repeats: int | MISSING = Field(
         default=MISSING,
         description="timed calls of each method at each target, 1 to 1000; "
         "default: as many as fit into a minute, 25 at most",
+        json_schema_extra={"minimum": 1, "maximum": 1000},
     )
 
 
 class ScenarioAnswer(BaseModel):
     """A scenario that methods can be compared on."""
 
-    name: str
-    title: str
+    name: str = Field(description="what requests call it")
+    title: str = Field(description="a line for people")
 
 
 class ScenariosAnswer(BaseModel):
     """All scenarios."""
 
-    scenarios: list[ScenarioAnswer]
-
-
-class SpreadAnswer(BaseModel):
-    """Over targets; what falls on a failure is left out."""
-
-    median: float | MISSING = MISSING
-    q95: float | MISSING = MISSING
-    max: float | MISSING = MISSING
-
-
-class MethodSummaryAnswer(BaseModel):
-    """One method over all targets; docs/comparisons.md tells what each field means."""
-
-    method: str
-    summary: str | MISSING = MISSING
-    targets: int
-    solved: int
-    solved_share: float
-    time_s: SpreadAnswer
-    charged_time_s: float
-    cold_time_s: SpreadAnswer | MISSING = MISSING
-    cold_solved: int | MISSING = MISSING
-    gap: SpreadAnswer
-    increase_percent: SpreadAnswer | MISSING = MISSING
-    not_compared: int
-    time_reduction_percent: float | MISSING = MISSING
-    published_time_s: float | MISSING = MISSING
-    published_increase_percent: float | MISSING = MISSING
-    published_time_reduction_percent: float | MISSING = MISSING
-    smallest_margin: float | MISSING = MISSING
-    iterations: SpreadAnswer | MISSING = MISSING
-    largest_residuals: dict[str, float]
-    largest_published_difference_percent: float | MISSING = MISSING
-
-
-class ComparisonRowAnswer(BaseModel):
-    """One method at one target; docs/comparisons.md tells what each field means."""
-
-    target_id: str
-    method: str
-    solved: bool
-    status: str
-    time_s: float
-    repeats: int
-    detail: str | MISSING = MISSING
-    index: float | MISSING = MISSING
-    cold_time_s: float | MISSING = MISSING
-    cold_repeats: int | MISSING = MISSING
-    cold_solved: bool | MISSING = MISSING
-    cold_index: float | MISSING = MISSING
-    cold_detail: str | MISSING = MISSING
-    iterations: int | MISSING = MISSING
-    residuals: dict[str, float]
-    margin: float | MISSING = MISSING
-    joints: list[float] | MISSING = MISSING
-    gap: float | MISSING = MISSING
-    increase_percent: float | MISSING = MISSING
-    time_reduction_percent: float | MISSING = MISSING
-    published_index: float | MISSING = MISSING
-    published_time_s: float | MISSING = MISSING
-    published_difference_percent: float | MISSING = MISSING
-    published_increase_percent: float | MISSING = MISSING
-    published_time_reduction_percent: float | MISSING = MISSING
-
-
-class MachineAnswer(BaseModel):
-    """On what and with what it was measured."""
-
-    processor: str
-    cores: int
-    memory_gib: float
-    system: str
-    python: str
-    versions: dict[str, str]
-    load_average: float = Field(description="at the start")
-    date: str
-
-
-class ComparisonResultAnswer(BaseModel):
-    """A complete comparison: what `prunus compare --json` prints."""
-
-    scenario: str
-    title: str
-    origin: str
-    index_name: str
-    notes: list[str]
-    published_on: str | MISSING = MISSING
-    reference: str
-    seeds: list[int]
-    machine: MachineAnswer
-    repeats: int
-    findings: list[str]
-    rows: list[ComparisonRowAnswer]
-    summaries: list[MethodSummaryAnswer]
+    scenarios: list[ScenarioAnswer] = Field(description="docs/scenarios.md has more of each")
 
 
 class ComparisonProgressAnswer(BaseModel):
     """How far a running comparison is."""
 
-    rows_done: int
-    rows_total: int
+    rows_done: int = Field(description="how many pairs of a method and a target are measured")
+    rows_total: int = Field(description="how many there are")
 
 
 class ComparisonAnswer(BaseModel):
     """A comparison: queued, running, and in the end completed or failed."""
 
-    id: str
-    scenario: str
+    id: str = Field(description="the comparison's id")
+    scenario: str = Field(description="the scenario's name")
     methods: list[str] | MISSING = Field(default=MISSING, description="as asked for")
-    repeats: int | MISSING = Field(default=MISSING, description="as asked for")
-    status: str
-    created_at: str
-    started_at: str | MISSING = MISSING
-    ended_at: str | MISSING = MISSING
+    repeats: int | MISSING = Field(default=MISSING, description="as asked for, 1 to 1000")
+    status: str = Field(description="queued, running, completed or failed; more may come")
+    created_at: str = Field(description="when it was taken on, RFC 3339 in UTC")
+    started_at: str | MISSING = Field(
+        default=MISSING, description="when it began to run, RFC 3339 in UTC; absent before"
+    )
+    ended_at: str | MISSING = Field(
+        default=MISSING, description="when it ended, RFC 3339 in UTC; absent before"
+    )
     progress: ComparisonProgressAnswer | MISSING = Field(
-        default=MISSING, description="while it is running"
+        default=MISSING, description="while it is running, from its first row on"
     )
     detail: str | MISSING = Field(default=MISSING, description="why it failed")
     result: ComparisonResultAnswer | MISSING = Field(

@@ -13,15 +13,19 @@ class JobAnswer(BaseModel):
 
     id: str = Field(description="also the id of its plan")
     plan_id: str = Field(description="GET /v1/plans/{plan_id} has it once the job is completed")
-    robot: str = Field(description="whose plan it makes")
-    status: str = Field(description="queued, running, completed, failed or canceled")
+    robot: str = Field(description="the robot whose plan it makes, by name")
+    status: str = Field(description="queued, running, completed, failed or canceled; more may come")
     targets: int = Field(description="how many the batch has")
     done: int = Field(description="how many of them are finished: planned and infeasible ones")
     planned: int = Field(description="how many have an approach")
     infeasible: int = Field(description="how many have none")
-    created_at: str = Field(description="ISO 8601, UTC")
-    started_at: str | MISSING = Field(default=MISSING, description="ISO 8601, UTC")
-    ended_at: str | MISSING = Field(default=MISSING, description="ISO 8601, UTC")
+    created_at: str = Field(description="when it was taken on, RFC 3339 in UTC")
+    started_at: str | MISSING = Field(
+        default=MISSING, description="when it first began, RFC 3339 in UTC; absent before"
+    )
+    ended_at: str | MISSING = Field(
+        default=MISSING, description="when it ended, RFC 3339 in UTC; absent before"
+    )
     detail: str | MISSING = Field(default=MISSING, description="why it failed")
 
 

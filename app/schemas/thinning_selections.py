@@ -14,22 +14,28 @@ from app.schemas.requests import StrictBody, Vector
 class BlossomBody(StrictBody):
     """A blossom on a branch."""
 
-    id: str = Field(description="not empty, once among all branches of the request")
+    id: str = Field(
+        description="not empty, once among all branches of the request",
+        json_schema_extra={"minLength": 1},
+    )
     distance_m: float = Field(
-        description="along the branch from its origin: 0 to the branch's length"
+        description="along the branch from its origin, 0 to the branch's length [m]",
+        json_schema_extra={"minimum": 0},
     )
 
 
 class BlossomBranchBody(StrictBody):
     """A branch as a polyline from its origin to its tip."""
 
-    id: str = Field(description="not empty, once in a request")
+    id: str = Field(description="not empty, once in a request", json_schema_extra={"minLength": 1})
     points_m: Annotated[
         list[Vector],
         Field(
             fail_fast=True,
-            description="two or more; neighbours 1e-6 to 100 m apart. In the robot's base frame or "
-            "another: the answer is in the same, which a plan of its targets must name",
+            description="two or more, three numbers each [m]; neighbours 1e-6 to 100 m apart. In "
+            "the robot's base frame or another: the answer is in the same, which a plan of its "
+            "targets must name",
+            json_schema_extra={"minItems": 2},
         ),
     ]
     blossoms: Annotated[list[BlossomBody], Field(fail_fast=True, description="in any order")]
@@ -38,23 +44,27 @@ class BlossomBranchBody(StrictBody):
 class ThinningSelectionRequest(StrictBody):
     """Branches with their blossoms."""
 
-    branches: Annotated[list[BlossomBranchBody], Field(fail_fast=True, description="at least one")]
+    branches: Annotated[list[BlossomBranchBody], Field(fail_fast=True)] = Field(
+        description="at least one", json_schema_extra={"minItems": 1}
+    )
 
 
 class PlacedBlossomAnswer(BaseModel):
     """A blossom with its place in space."""
 
     id: str = Field(description="the blossom's")
-    branch_id: str
-    position_m: list[float] = Field(description="three numbers, on the branch")
-    branch_direction: list[float] = Field(
-        description="three numbers: the unit tangent towards the tip"
+    branch_id: str = Field(description="its branch's")
+    position_m: list[float] = Field(
+        description="three numbers: on the branch, in the same frame [m]"
     )
-    distance_m: float = Field(description="along the branch from its origin, as sent")
+    branch_direction: list[float] = Field(
+        description="three numbers of length 1: the tangent towards the tip"
+    )
+    distance_m: float = Field(description="along the branch from its origin, as sent [m]")
 
 
 class ThinningSelectionAnswer(BaseModel):
     """Every blossom of the request, branch by branch as sent, from origin to tip."""
 
-    targets: list[PlacedBlossomAnswer] = Field(description="what is removed")
+    targets: list[PlacedBlossomAnswer] = Field(description="what is removed, for a plan")
     keepers: list[PlacedBlossomAnswer] = Field(description="what stays")

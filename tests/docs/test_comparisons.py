@@ -12,7 +12,8 @@ from pydantic import TypeAdapter
 from app.cli import cli
 from app.reports.folder import OWN_FILES
 from app.reports.tables import ROW_COLUMNS
-from app.schemas.comparisons import ComparisonRequest, ComparisonResultAnswer
+from app.schemas.comparison_results import ComparisonResultAnswer
+from app.schemas.comparisons import ComparisonRequest
 from solver.comparison.registry import SCENARIOS
 from solver.comparison.result import Comparison, MethodSummary, Row
 from solver.comparison.run import MOST_REPEATS

@@ -20,7 +20,7 @@ from app.reports.markdown import comparison_to_markdown
 from app.reports.picture import Picture
 from app.reports.tables import FAILED, ROW_COLUMNS, number, row_table, seconds
 from app.reports.wire import comparison_to_wire
-from app.schemas.comparisons import (
+from app.schemas.comparison_results import (
     ComparisonResultAnswer,
     ComparisonRowAnswer,
     MethodSummaryAnswer,
