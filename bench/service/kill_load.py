@@ -20,6 +20,7 @@ ANSWER_S = 60.0
 GIVE_UP_S = 900.0
 SPREAD_M = 0.02
 BATCH_TARGETS = (1, 1, 1, 5, 20)
+LONGEST_PAUSE_S = 0.2
 JOB_TARGETS = (60, 400, 1500)
 
 
@@ -114,6 +115,8 @@ class LoadClient(threading.Thread):
 
     def _one(self) -> None:
         self._plan(self._random.choice(BATCH_TARGETS))
+        # Without pauses nothing is left for jobs, which take what the others leave.
+        time.sleep(self._random.uniform(0, LONGEST_PAUSE_S))
 
     def _plan(self, targets: int, **headers: str) -> Answered:
         body = orjson.dumps(self._request(targets))
