@@ -13,7 +13,8 @@ class SolverAnswer(BaseModel):
 
     method: str = Field(description="the method, as in `options`")
     elapsed_s: float = Field(
-        description="time spent on this target alone, without its certificate [s]; `elapsed_s` of "
+        description="time spent on this target, an equal share where several were solved together, "
+        "without its certificate [s]; `elapsed_s` of "
         "the summary has all"
     )
     iterations: int = Field(

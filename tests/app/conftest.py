@@ -22,6 +22,7 @@ from app.store import open_engine
 REPOSITORY = Path(__file__).parents[2]
 EXAMPLE = REPOSITORY / "openapi" / "examples" / "data_set_3.json"
 ANNOUNCEMENT = "Prunus listens on "
+BODY_LIMIT_BYTES = 8_000_000  # of the session's server
 START_S = 60
 READY_S = 600  # the first start compiles every kernel
 
@@ -116,7 +117,9 @@ def engine(store_url: URL) -> Iterator[Engine]:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running_server(tmp_path_factory.mktemp("service"), PRUNUS_BODY_LIMIT_BYTES="200000") as it:
+    with running_server(
+        tmp_path_factory.mktemp("service"), PRUNUS_BODY_LIMIT_BYTES=str(BODY_LIMIT_BYTES)
+    ) as it:
         yield it
 
 

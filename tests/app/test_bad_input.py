@@ -6,7 +6,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from tests.app.conftest import Server, assert_problem
+from tests.app.conftest import BODY_LIMIT_BYTES, Server, assert_problem
 
 MARKER = "qq7z"
 Body = dict[str, Any]
@@ -211,10 +211,10 @@ def test_wrong_media_type(media_type: str, server: Server, request_body: Body) -
 
 
 def test_body_over_the_limit(server: Server) -> None:
-    assert_problem(post(server, b" " * 200_001), 413)
+    assert_problem(post(server, b" " * (BODY_LIMIT_BYTES + 1)), 413)
 
 
-@pytest.mark.parametrize("sizes", [[10_000] * 40, [100_000, 100_001], [200_001]])
+@pytest.mark.parametrize("sizes", [[400_000] * 40, [4_000_000, 4_000_001], [8_000_001]])
 def test_streamed_body_over_the_limit(sizes: list[int], server: Server) -> None:
     chunks = (b" " * size for size in sizes)
     answer = server.client.post(

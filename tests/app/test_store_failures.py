@@ -2,10 +2,12 @@
 
 import contextlib
 import os
+import resource
 import signal
 import sqlite3
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ from app.store import ExecutionStore, PlanStore, open_engine
 from app.store import postgresql as postgresql_connections
 from app.store.failures import StoreFailure, failure_of
 from bench.service.postgresql import PostgresqlServer
-from tests.app.conftest import REPOSITORY, assert_problem, running_server, wait_until
+from tests.app.conftest import REPOSITORY, Server, assert_problem, running_server, wait_until
 
 Body = dict[str, Any]
 ID = "0" * 32
@@ -38,21 +40,64 @@ def serve(data_dir: Path, **environment: str) -> subprocess.CompletedProcess[str
     )  # fmt: skip
 
 
-def test_locked_and_taken_sqlite(tmp_path: Path, request_body: Body) -> None:
-    with running_server(tmp_path) as server:
-        second = serve(tmp_path)
-        assert second.returncode == 1
-        assert len(second.stderr.splitlines()) == 1
-        assert "another service" in second.stderr
-        path = tmp_path / "prunus.sqlite3"
-        with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as other:
-            other.execute("BEGIN EXCLUSIVE")
-            assert_unavailable(server.client.post("/v1/plans", json=request_body))
-            assert server.client.get("/healthz").status_code == 200
-            other.execute("ROLLBACK")
-        assert server.stored_plans() == 0
-        assert server.client.post("/v1/plans", json=request_body).status_code == 201
-        assert server.stored_plans() == 1
+@pytest.fixture(scope="module")
+def on_sqlite(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with running_server(tmp_path_factory.mktemp("failing")) as it:
+        yield it
+
+
+def test_locked_and_taken_sqlite(on_sqlite: Server, request_body: Body) -> None:
+    server = on_sqlite
+    second = serve(server.data_dir)
+    assert second.returncode == 1
+    assert len(second.stderr.splitlines()) == 1
+    assert "another service" in second.stderr
+    path = server.data_dir / "prunus.sqlite3"
+    with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        assert_unavailable(server.client.post("/v1/plans", json=request_body))
+        assert server.client.get("/healthz").status_code == 200
+        other.execute("ROLLBACK")
+    assert server.stored_plans() == 0
+    assert server.client.post("/v1/plans", json=request_body).status_code == 201
+    assert server.stored_plans() == 1
+
+
+def test_a_full_disk(on_sqlite: Server, request_body: Body) -> None:
+    server = on_sqlite
+    plan = server.client.post("/v1/plans", json=request_body)
+    stored = server.stored_plans()
+    more = [{**target, "id": f"{k}"} for k in range(400) for target in request_body["targets"][:1]]
+    long = {**request_body, "targets": more, "options": {"method": "ncos", "include": ["path"]}}
+    job = server.client.post("/v1/plans", json=long, headers={"Prefer": "respond-async"})
+    assert job.status_code == 202
+    unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+    full = (4096, resource.RLIM_INFINITY)  # nothing is written behind that in any file
+    resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, full)
+    try:
+        for method, path, body in (
+            ("POST", "/v1/plans", request_body),
+            ("PUT", "/v1/frames/new", {"position_m": [0, 0, 0], "quaternion_xyzw": [0, 0, 0, 1]}),
+            ("DELETE", job.headers["location"], None),
+        ):
+            problem = assert_problem(server.client.request(method, path, json=body), 507)
+            assert problem["type"].endswith("storage_full")
+        assert server.client.get(plan.headers["location"]).content == plan.content
+        assert server.client.get("/healthz").status_code == 200
+        assert server.client.get("/v1/frames").json() == {"frames": []}
+        assert server.stored_plans() == stored
+    finally:
+        resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, unlimited)
+    assert server.client.post("/v1/plans", json=request_body).status_code == 201
+
+    def status() -> str:
+        told: str = server.client.get(job.headers["location"]).json()["status"]
+        return told
+
+    # It waited for the room, and lost nothing.
+    wait_until(lambda: status() == "completed", 60)
+    done = server.client.get(job.headers["location"].replace("jobs", "plans")).json()
+    assert [entry["target_id"] for entry in done["approaches"]] == [f"{k}" for k in range(400)]
 
 
 def test_lost_postgresql(

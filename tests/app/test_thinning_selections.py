@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from tests.app.conftest import Server, assert_problem
+from tests.app.conftest import BODY_LIMIT_BYTES, Server, assert_problem
 
 PATH = "/v1/thinning-selections"
 MARKER = "qq7z"
@@ -130,7 +130,9 @@ def test_number_that_is_not_finite(number: str, server: Server, body: Body) -> N
 
 def test_size_limits(server: Server, body: Body) -> None:
     headers = {"Content-Type": "application/json"}
-    assert_problem(server.client.post(PATH, content=b" " * 200_001, headers=headers), 413)
+    assert_problem(
+        server.client.post(PATH, content=b" " * (BODY_LIMIT_BYTES + 1), headers=headers), 413
+    )
     text = {"Content-Type": "text/plain"}
     assert_problem(server.client.post(PATH, content=b"{}", headers=text), 415)
     body["branches"][0]["blossoms"] = [{"id": "", "distance_m": -1}] * 5_000
