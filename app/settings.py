@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -125,6 +126,23 @@ class Settings(BaseSettings):
             postgresql = url.drivername in ("postgresql", "postgres")
             return url.set(drivername="postgresql+psycopg") if postgresql else url
         return URL.create("sqlite", database=str(self.data_dir.resolve() / "prunus.sqlite3"))
+
+
+OTHER_VARIABLES: Final = ("SETTINGS", "ROBOTS_DIR", "URL", "TOKEN", "SERIAL")
+"""What else is called PRUNUS_...: of other commands, of models, of clients and units."""
+
+
+def misspelt_variables(names: Iterable[str]) -> list[str]:
+    """Those of the environment's names that look like a setting and are none.
+
+    Ignored, a misspelt PRUNUS_REQUIRE_TOKEN would leave a service open that is thought closed.
+    """
+    prefix = str(Settings.model_config["env_prefix"])
+    known = {f"{prefix}{name}".upper() for name in (*Settings.model_fields, *OTHER_VARIABLES)}
+    # Settings are found whatever the case of their names.
+    return sorted(
+        name for name in names if name.upper().startswith(prefix) and name.upper() not in known
+    )
 
 
 class SettingsFileUnusable(Exception):

@@ -1,6 +1,7 @@
 """`prunus settings`, and how commands of the service get their settings."""
 
 import json
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -30,8 +31,10 @@ def settings_or_fail(file: Path | None, given: dict[str, Any]) -> "Settings":
     """The settings, or the end of the command with one line."""
     from pydantic import ValidationError
 
-    from app.settings import SettingsFileUnusable, load_settings
+    from app.settings import SettingsFileUnusable, load_settings, misspelt_variables
 
+    if misspelt := misspelt_variables(os.environ):
+        fail(f"unknown settings in the environment: {', '.join(misspelt)}", code=1)
     try:
         return load_settings(
             file, {name: value for name, value in given.items() if value is not None}

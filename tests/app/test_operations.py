@@ -80,6 +80,18 @@ def test_bad_settings_file_is_one_line(tmp_path: Path, text: str) -> None:
     assert len(finished.stderr.splitlines()) == 1
 
 
+def test_a_misspelt_variable_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("PRUNUS_ROBOTS_DIR", "PRUNUS_URL", "prunus_grace_s", "PRUNUSES"):
+        monkeypatch.setenv(name, "1")
+    assert command("settings").returncode == 0
+    monkeypatch.setenv("PRUNUS_REQUIRE_TOKENS", "hush")
+    finished = command("settings")
+    assert finished.returncode == 1
+    assert len(finished.stderr.splitlines()) == 1
+    assert "PRUNUS_REQUIRE_TOKENS" in finished.stderr
+    assert "hush" not in finished.stderr
+
+
 def test_shown_settings_hide_the_password(tmp_path: Path) -> None:
     file = tmp_path / "prunus.toml"
     file.write_text('database_url = "postgresql+psycopg://me:hush@db/prunus"')
