@@ -16,10 +16,7 @@ test: $(VENV)/dev.stamp          ## set up, then every check and every test
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2 tests/solver tests/bench
-	$(BIN)/pytest -n 2 --dist loadfile -m "not alone" tests/app tests/docs tests/contracts
-	$(BIN)/pytest -m alone tests/app tests/docs
-	$(BIN)/pytest tests/hardware
+	@sh scripts/run_tests.sh $(BIN)
 
 serve: $(VENV)/run.stamp         ## the service, on loopback
 	@$(BIN)/prunus serve
