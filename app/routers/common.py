@@ -5,6 +5,7 @@ from typing import Any
 from fastapi import Request
 
 from app.errors import ProblemError
+from app.schemas.examples import EXAMPLES
 from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
 from app.services.leases import LEASE_HEADER
 
@@ -35,8 +36,9 @@ def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 def body_of(model: type) -> dict[str, Any]:
     """The OpenAPI description of a body that the route reads itself."""
-    schema = {"$ref": f"#/components/schemas/{model.__name__}"}
-    return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
+    name = model.__name__
+    content = {"schema": {"$ref": f"#/components/schemas/{name}"}, "example": EXAMPLES[name]}
+    return {"requestBody": {"required": True, "content": {"application/json": content}}}
 
 
 NDJSON = "application/x-ndjson"

@@ -36,6 +36,7 @@ PREFER: Final = {
     "required": False,
     "description": f"`{RESPOND_ASYNC}`: answer with a job, however few targets there are",
     "schema": {"type": "string"},
+    "example": RESPOND_ASYNC,
 }
 
 router = APIRouter(prefix="/v1/plans", tags=["plans"])

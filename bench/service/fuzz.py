@@ -38,7 +38,6 @@ from bench.service.load import live_server
 EXPECTED_503: Final = ("no_worker", "jobs_full", "comparisons_full")
 CASES: Final = 2000
 PHASES: Final = ("examples", "coverage", "fuzzing", "stateful")
-EXAMPLES: Final = Path(__file__).parents[2] / "openapi" / "examples"
 ANSWER_S: Final = 120.0
 UNLIMITED: Final[Mapping[str, str]] = {
     "PRUNUS_RATE_LIMIT_PER_S": "1000000",
@@ -136,32 +135,7 @@ def only_expected_503(_: CheckContext, response: Response, case: Case[Any]) -> N
 def _description(url: str) -> dict[str, Any]:
     with urllib.request.urlopen(f"{url}/openapi.json") as answer:
         document: dict[str, Any] = orjson.loads(answer.read())
-    for (method, path), body in _examples().items():
-        content = document["paths"][path][method]["requestBody"]["content"]
-        content["application/json"]["example"] = body
-    for parameter in document["paths"]["/v1/plans"]["post"]["parameters"]:
-        if parameter["name"] == "Prefer":
-            parameter["example"] = "respond-async"  # there would be no job to ask for
     return document
-
-
-def _examples() -> dict[tuple[str, str], Any]:
-    """Bodies that make sense; made up ones hardly do, and nothing behind 422 would be reached."""
-    plan = orjson.loads((EXAMPLES / "data_set_3.json").read_bytes())
-    quick = {**plan["options"], "method": "ssas"}
-    compared = {"scenario": "data-set-3", "methods": ["ssas"], "repeats": 1}
-    thinning = orjson.loads((EXAMPLES / "thinning_selection.json").read_bytes())
-    registration = orjson.loads((EXAMPLES / "frame_registration.json").read_bytes())
-    return {
-        ("post", "/v1/plans"): {**plan, "options": quick},
-        ("post", "/v1/comparisons"): compared,
-        ("post", "/v1/thinning-selections"): thinning,
-        ("post", "/v1/frames/{name}/registration"): registration,
-        ("put", "/v1/frames/{name}"): {
-            "position_m": [-0.25, 0.02, 0.45],
-            "quaternion_xyzw": [-0.5, 0.5, -0.5, 0.5],
-        },
-    }
 
 
 def _config(cases: int, seed: int, phases: tuple[str, ...] | list[str]) -> dict[str, Any]:
