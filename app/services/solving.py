@@ -133,7 +133,7 @@ class SolvingService:
             replace(problem, targets=problem.targets[first : first + size])
             for first in range(0, len(problem.targets), size)
         ]
-        solved = await asyncio.gather(*(self._share(share) for share in shares))
+        solved = await asyncio.gather(*(self._run(solve_share, share) for share in shares))
         figures = added(part.figures for part in solved)
         totals = Totals(
             figures.planned,
@@ -143,9 +143,6 @@ class SolvingService:
         )
         head = head_of(problem, plan_id, totals)
         return b"".join(joined(head, (part.approaches for part in solved))), figures
-
-    async def _share(self, share: Problem) -> SolvedPart:
-        return await self._run(solve_share, share)
 
     async def read(
         self,
