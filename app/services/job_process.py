@@ -36,6 +36,8 @@ class JobProcess:
         Raises:
             SolverLost: the process died, or was ended.
         """
+        if self._process is None:
+            self._process = SolverProcess(partial(prepare, self._logs), NICENESS)
         await self._run(load_job, job_id, work.request, work.choice)
         if work.choice is not None:
             return work.choice
@@ -62,7 +64,7 @@ class JobProcess:
 
     async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
         if self._process is None:
-            self._process = SolverProcess(partial(prepare, self._logs), NICENESS)
+            raise SolverLost  # ended between two calls, and a new one would not have the job
         try:
             return await self._process.call(work, *arguments)
         except SolverLost:
@@ -70,7 +72,7 @@ class JobProcess:
             raise
 
     async def end(self) -> None:
-        """End the process at once, whatever it does; the next work starts another."""
+        """End the process at once, whatever it does; the next job starts another."""
         process, self._process = self._process, None
         if process is not None:
             await asyncio.to_thread(process.end)

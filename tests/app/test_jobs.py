@@ -15,8 +15,10 @@ from sqlalchemy.exc import OperationalError
 
 from app.logs import LogOptions
 from app.services.batch_reading import JobOrder
+from app.services.job_process import JobProcess
 from app.services.jobs import JobService
 from app.services.measures import NoMeasures
+from app.services.solver_process import SolverLost
 from app.store import JobStore, open_engine
 from tests.app.conftest import Server, assert_problem, running_server, wait_until
 from tests.solver.problems import random_targets
@@ -237,6 +239,16 @@ def test_a_job_goes_on_behind_its_last_part(tmp_path: Path, kind: signal.Signals
             assert entry["part"] not in stored, "stored again"
             stored.add(entry["part"])
     assert stored == set(range(4))
+
+
+def test_a_process_that_was_ended_after_it_had_loaded_its_job_is_a_lost_one() -> None:
+    async def work() -> None:
+        process = JobProcess(LogOptions())
+        await process.end()
+        with pytest.raises(SolverLost):
+            await process.part("0" * 32, 0, 0, None)
+
+    asyncio.run(work())
 
 
 def test_a_job_whose_commit_is_in_doubt_is_worked_on(
