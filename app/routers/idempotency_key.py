@@ -75,16 +75,27 @@ async def once(
         ProblemError: 422, the key makes no sense or stands for another body; whatever `create`
             raises.
     """
-    text = _key(request)
-    if text is None:
+    key = await new_key(request, body)
+    if key is None:
         return await create(None)
-    digest = await run_in_threadpool(lambda: hashlib.sha256(body).hexdigest())
-    key = NewKey(_scope(request), text, digest)
     service: IdempotencyService = request.app.state.idempotency
     answer = await service.once(key, lambda: create(key))
     if isinstance(answer, KeyedAnswer):
         return await _replayed(answer, read)
     return answer
+
+
+async def new_key(request: Request, body: bytes) -> NewKey | None:
+    """The key of a request with this body, if it has one.
+
+    Raises:
+        ProblemError: 422, the key makes no sense.
+    """
+    text = _key(request)
+    if text is None:
+        return None
+    digest = await run_in_threadpool(lambda: hashlib.sha256(body).hexdigest())
+    return NewKey(_scope(request), text, digest)
 
 
 def _key(request: Request) -> str | None:

@@ -7,6 +7,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
 from app.routers.common import body_of, json_body, problem_answers
+from app.routers.idempotency_key import CREATED_HEADERS, REPLAYED, new_key, with_key
 from app.schemas.leases import LeaseAnswer, LeaseRenewal, LeaseRequest, LeaseStateAnswer
 from app.services.execution_checks import robot_instance
 from app.services.leases import USUAL_LEASE_S, Lease, LeaseService
@@ -22,23 +23,29 @@ router = APIRouter(prefix="/v1/robots/{name}/lease", tags=["robots"])
     responses={
         201: {
             "model": LeaseAnswer,
-            "headers": {"Location": {"schema": {"type": "string"}}},
+            "headers": CREATED_HEADERS,
         },
         **problem_answers(404, 408, 409, 413, 415, 422, 500),
     },
-    openapi_extra=body_of(LeaseRequest),
+    openapi_extra=with_key(body_of(LeaseRequest)),
 )
 async def create_lease(name: str, request: Request) -> Response:
     """While it lasts, only requests with the header `Prunus-Lease` start and change executions.
 
-    Anybody may still stop the robot. What is being executed goes on when the lease ends.
+    Anybody may still stop the robot. What is being executed goes on when the lease ends. The key
+    gives the same lease again as long as it lasts, with the time when it ends now.
     """
-    given = LeaseRequest.model_validate_json(await json_body(request))
+    body = await json_body(request)
+    given = LeaseRequest.model_validate_json(body)
     await run_in_threadpool(robot_instance, name)
     duration_s = USUAL_LEASE_S if given.duration_s is MISSING else given.duration_s
-    lease = _service(request).take(name, given.holder, duration_s)
-    location = f"/v1/robots/{name}/lease/{lease.id}"
-    return _answer(lease, 201, {"Location": location})
+    key = await new_key(request, body)
+    before = _service(request).current(name)
+    lease = _service(request).take(name, given.holder, duration_s, key)
+    headers = {"Location": f"/v1/robots/{name}/lease/{lease.id}"}
+    if lease is before:
+        headers[REPLAYED] = "true"
+    return _answer(lease, 201, headers)
 
 
 @router.get(

@@ -12,6 +12,12 @@ from app.store import IdempotencyStore, KeyedAnswer, KeyTaken, NewKey
 Created = TypeVar("Created")
 
 
+def key_reused() -> ProblemError:
+    """The 422 for a key that stands for another body."""
+    detail = "This Idempotency-Key was used for another body; take a new key for a new request."
+    return ProblemError(422, "idempotency_key_reused", detail)
+
+
 class IdempotencyService:
     """Lives on the event loop and is used there only."""
 
@@ -58,9 +64,5 @@ class IdempotencyService:
         if stored is None:
             return None
         if stored.digest != key.digest:
-            raise ProblemError(
-                422,
-                "idempotency_key_reused",
-                "This Idempotency-Key was used for another body; take a new key for a new request.",
-            )
+            raise key_reused()
         return stored.answer

@@ -16,6 +16,8 @@ from datetime import UTC, datetime, timedelta
 from typing import Final
 
 from app.errors import ProblemError
+from app.services.idempotency import key_reused
+from app.store import NewKey
 from hardware.clock import instant_text
 
 LEASE_HEADER: Final = "Prunus-Lease"
@@ -37,6 +39,7 @@ class Lease:
         duration_s: how long it lasts from when it was given or renewed.
         expires_at: when it ends, RFC 3339, for people.
         ends: when it ends, on the service's own clock [s].
+        key: that it was asked for under, if any.
     """
 
     id: str
@@ -45,6 +48,7 @@ class Lease:
     duration_s: float
     expires_at: str
     ends: float
+    key: NewKey | None = None
 
 
 class LeaseService:
@@ -62,15 +66,21 @@ class LeaseService:
             return None
         return lease
 
-    def take(self, robot: str, holder: str, duration_s: float) -> Lease:
-        """A new lease of a robot that nobody has.
+    def take(self, robot: str, holder: str, duration_s: float, key: NewKey | None = None) -> Lease:
+        """A new lease of a robot that nobody has, or the one that was given under the same key.
 
         Raises:
-            ProblemError: 409, somebody has it.
+            ProblemError: 409, somebody has it; 422, the key stands for another body.
         """
-        if self.current(robot) is not None:
+        lease = self.current(robot)
+        if lease is None:
+            return self._keep(Lease(uuid.uuid4().hex, robot, holder, duration_s, "", 0.0, key))
+        known = lease.key
+        if key is None or known is None or (key.scope, key.key) != (known.scope, known.key):
             raise self._leased(robot, "The robot is leased to another client.")
-        return self._keep(Lease(uuid.uuid4().hex, robot, holder, duration_s, "", 0.0))
+        if key.digest != known.digest:
+            raise key_reused()
+        return lease
 
     def renew(self, robot: str, lease_id: str, duration_s: float | None) -> Lease:
         """The same lease from now on, for as long as before or for another duration.

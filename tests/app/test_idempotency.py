@@ -241,6 +241,21 @@ def test_a_registration_that_comes_late_does_not_undo_a_newer_one(server: Server
     assert server.client.get("/v1/frames/late-camera").content == newer != first.content
 
 
+def test_a_lease_is_given_again_as_long_as_it_lasts(server: Server) -> None:
+    path, key = "/v1/robots/puma560/lease", new_key()
+    asked = {"holder": "row 7"}
+    first = post(server, path, key, asked)
+    again = post(server, path, key, asked)
+    assert (first.status_code, again.status_code) == (201, 201)
+    assert first.json() == again.json()
+    assert REPLAYED not in first.headers
+    assert again.headers[REPLAYED] == "true"
+    assert again.headers["location"] == first.headers["location"]
+    assert_code(post(server, path, key, {"holder": "row 8"}), 422, "idempotency_key_reused")
+    assert_code(post(server, path, new_key(), asked), 409, "leased")
+    assert server.client.delete(first.headers["location"]).status_code == 204
+
+
 def test_every_operation_that_creates_takes_a_key(server: Server) -> None:
     """As the document says; these are the routes tested above."""
     paths = server.client.get("/openapi.json").json()["paths"]
@@ -255,7 +270,5 @@ def test_every_operation_that_creates_takes_a_key(server: Server) -> None:
             for entry in operation.get("responses", {}).values()
         ):
             creating.add(path)
-    # A lease ends by itself within a minute or so; an old answer for ever would tell of one that is
-    # long over.
-    assert taking == creating - {"/v1/robots/{name}/lease"}
+    assert taking == creating
     assert {PLANS, EXECUTIONS, COMPARISONS} <= taking

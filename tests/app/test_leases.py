@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from app.errors import ProblemError
 from app.services.leases import LeaseService
+from app.store import NewKey
 
 
 class Clock:
@@ -73,3 +74,21 @@ def test_only_its_holder_gives_it_back() -> None:
     leases.give_back("arm", lease.id)
     assert leases.current("arm") is None
     leases.check("arm", "")
+
+
+def test_a_key_gives_the_same_lease_as_long_as_it_lasts() -> None:
+    clock = Clock()
+    leases = LeaseService(monotonic=clock)
+    key, other = NewKey("POST arm", "k", "1"), NewKey("POST arm", "other", "1")
+    lease = leases.take("arm", "a", 10, key)
+    clock.now_s = 9
+    assert leases.take("arm", "a", 10, key) is lease
+    renewed = leases.renew("arm", lease.id, None)
+    assert leases.take("arm", "a", 10, key) is renewed
+    with refused("idempotency_key_reused"):
+        leases.take("arm", "b", 10, NewKey("POST arm", "k", "2"))
+    for wrong in (None, other, NewKey("somebody else", "k", "1")):
+        with refused("leased"):
+            leases.take("arm", "a", 10, wrong)
+    clock.now_s = 20
+    assert leases.take("arm", "a", 10, key).id != lease.id
