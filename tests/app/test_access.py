@@ -273,7 +273,7 @@ def test_limits_of_a_service_that_is_made_small(tmp_path: Path, request_body: Bo
     errors = tmp_path / "errors.txt"
     environment = {
         "PRUNUS_REQUIRE_TOKEN": "true", "PRUNUS_RATE_LIMIT_PER_S": "0.1",
-        "PRUNUS_RATE_BURST": "3", "PRUNUS_WORKERS": "1",
+        "PRUNUS_RATE_BURST": "3", "PRUNUS_WORKERS": "1", "PRUNUS_LOG_LEVEL": "debug",
     }  # fmt: skip
     with errors.open("w") as log, running_server(tmp_path, stderr=log, **environment) as server:
         with client(server, None) as stranger:

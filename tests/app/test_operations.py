@@ -192,13 +192,32 @@ def test_stop_under_load_cuts_nothing(tmp_path: Path, request_body: Body) -> Non
         assert set(codes) <= {201, 503}
 
 
-def test_readiness_while_stopping(tmp_path: Path, request_body: Body) -> None:
-    body = {**request_body, "options": {"method": "ncos", "include": []}}
-    body["targets"] = [
+def slow(body: Body) -> Body:
+    """A batch that takes many seconds."""
+    targets = [
         {**target, "id": f"{copy}-{target['id']}"}
         for copy in range(300)
-        for target in request_body["targets"]
+        for target in body["targets"]
     ]
+    return {**body, "targets": targets, "options": {"method": "ncos", "include": []}}
+
+
+def test_what_takes_longer_than_a_stop_is_told_so(tmp_path: Path, request_body: Body) -> None:
+    with (
+        running_server(tmp_path, PRUNUS_GRACE_S="0.5") as server,
+        concurrent.futures.ThreadPoolExecutor(1) as executor,
+    ):
+        solving = executor.submit(server.client.post, "/v1/plans", json=slow(request_body))
+        wait_until(lambda: b"prunus_solver_running 1.0" in metrics(server), 30)
+        server.process.send_signal(signal.SIGTERM)
+        problem = assert_problem(solving.result(), 503)
+        assert problem["type"].endswith("solver_unavailable")
+        assert server.process.wait(30) == 0
+        assert server.stored_plans() == 0
+
+
+def test_readiness_while_stopping(tmp_path: Path, request_body: Body) -> None:
+    body = slow(request_body)
     with running_server(tmp_path) as server, concurrent.futures.ThreadPoolExecutor(1) as executor:
         solving = executor.submit(server.client.post, "/v1/plans", json=body)
         wait_until(lambda: b"prunus_solver_running 1.0" in metrics(server), 30)

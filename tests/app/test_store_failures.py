@@ -125,6 +125,11 @@ def test_lost_postgresql(
         database = postgresql_url.rpartition("/")[2]
         wait_until(lambda: postgresql.execute(locks, database) == [(1,)], 30)
         assert server.client.get("/v1/executions?robot=%00").json() == {"executions": []}
+        # PostgreSQL's texts take no NUL, JSON's do.
+        request_body["targets"][0]["id"] = "a\0b"
+        answer = server.client.post("/v1/plans", json=request_body)
+        assert answer.json()["approaches"][0]["target_id"] == "a\0b"
+        assert server.client.get(answer.headers["location"]).content == answer.content
 
 
 def test_a_database_that_is_not_there_is_one_line(
