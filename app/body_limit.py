@@ -11,6 +11,9 @@ from app.errors import problem_response
 # for so long, so that it gets to see the answer instead of a reset connection.
 DRAINED_LIMITS = 4
 DRAIN_S = 5
+# Bodies of megabytes are parsed in other processes on these routes; no other has use for any.
+LARGE_ROUTES = ("/v1/plans", "/v1/thinning-selections")
+SMALL_BODY_BYTES = 1024 * 1024
 
 
 class _BodyTooLarge(Exception):
@@ -31,12 +34,14 @@ class BodyLimitMiddleware:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
+        large = scope["path"] in LARGE_ROUTES
+        limit = self._limit if large else min(self._limit, SMALL_BODY_BYTES)
         headers = dict(scope["headers"])
         declared = headers.get(b"content-length", b"")
-        if declared.isdigit() and int(declared) > self._limit:
+        if declared.isdigit() and int(declared) > limit:
             if headers.get(b"expect", b"").lower() != b"100-continue":
-                await self._drain(receive)
-            await self._refuse(scope, receive, send)
+                await _drain(receive, limit)
+            await _refuse(limit, scope, receive, send)
             return
         received = 0
         started = False
@@ -45,7 +50,7 @@ class BodyLimitMiddleware:
             nonlocal received
             message = await receive()
             received += len(message.get("body", b""))
-            if received > self._limit:
+            if received > limit:
                 raise _BodyTooLarge(has_more=message.get("more_body", False))
             return message
 
@@ -60,24 +65,26 @@ class BodyLimitMiddleware:
             if started:
                 raise
             if error.has_more:
-                await self._drain(receive)
-            await self._refuse(scope, receive, send)
+                await _drain(receive, limit)
+            await _refuse(limit, scope, receive, send)
 
-    async def _drain(self, receive: Receive) -> None:
-        thrown_away = 0
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(DRAIN_S):
-                while thrown_away <= DRAINED_LIMITS * self._limit:
-                    message = await receive()
-                    thrown_away += len(message.get("body", b""))
-                    if not message.get("more_body", False):
-                        return
 
-    async def _refuse(self, scope: Scope, receive: Receive, send: Send) -> None:
-        response = problem_response(
-            413,
-            "body_too_large",
-            f"The body is over the limit of {self._limit} bytes.",
-            headers={"Connection": "close"},
-        )
-        await response(scope, receive, send)
+async def _drain(receive: Receive, limit: int) -> None:
+    thrown_away = 0
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(DRAIN_S):
+            while thrown_away <= DRAINED_LIMITS * limit:
+                message = await receive()
+                thrown_away += len(message.get("body", b""))
+                if not message.get("more_body", False):
+                    return
+
+
+async def _refuse(limit: int, scope: Scope, receive: Receive, send: Send) -> None:
+    response = problem_response(
+        413,
+        "body_too_large",
+        f"The body is over the limit of {limit} bytes.",
+        headers={"Connection": "close"},
+    )
+    await response(scope, receive, send)

@@ -2,7 +2,8 @@
 
 import http
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -59,6 +60,17 @@ def invalid_request(faults: Sequence[Fault]) -> ProblemError:
     return ProblemError(
         422, "invalid_request", "The request makes no sense; see errors.", faults=faults
     )
+
+
+@contextmanager
+def told_as_problem() -> Iterator[None]:
+    """Tell of a request that makes no sense as the ProblemError of its faults."""
+    try:
+        yield
+    except ValidationError as error:
+        raise invalid_request(structural_faults(error)) from None
+    except InvalidProblem as error:
+        raise invalid_request(error.faults) from None
 
 
 def structural_faults(error: ValidationError) -> tuple[Fault, ...]:

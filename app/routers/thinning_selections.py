@@ -1,12 +1,13 @@
 """Thinning selections: which blossoms of a branch are removed by the 5-8 pattern."""
 
-import orjson
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, problem_answers
 from app.schemas.thinning_selections import ThinningSelectionAnswer, ThinningSelectionRequest
-from solver import Blossom, BlossomBranch, ThinningSelection, select_blossoms
+from app.services.batch_reading import LARGE_BODY_BYTES
+from app.services.selecting import selection_to_json
+from app.services.solving import SolvingService
 
 router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"])
 
@@ -27,27 +28,9 @@ async def create_thinning_selection(request: Request) -> Response:
     Nothing is stored.
     """
     body = await json_body(request)
-    return Response(await run_in_threadpool(_answer, body), media_type="application/json")
-
-
-def _answer(body: bytes) -> bytes:
-    selection = select(ThinningSelectionRequest.model_validate_json(body))
-    # orjson writes dataclasses as objects, with the contract's names.
-    return orjson.dumps({"targets": selection.targets, "keepers": selection.keepers})
-
-
-def select(request: ThinningSelectionRequest) -> ThinningSelection:
-    """What a request's blossoms come to.
-
-    Raises:
-        InvalidProblem: with the faults found; no fault repeats what was sent.
-    """
-    branches = [
-        BlossomBranch(
-            branch.id,
-            branch.points_m,
-            [Blossom(blossom.id, blossom.distance_m) for blossom in branch.blossoms],
-        )
-        for branch in request.branches
-    ]
-    return select_blossoms(branches)
+    if len(body) <= LARGE_BODY_BYTES:
+        answer = await run_in_threadpool(selection_to_json, body)
+    else:
+        solving: SolvingService = request.app.state.solving
+        answer = await solving.select(body)
+    return Response(answer, media_type="application/json")

@@ -3,9 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pydantic import ValidationError
-
-from app.errors import invalid_request, structural_faults
+from app.errors import told_as_problem
 from app.services.job_parts import resolved_request
 from app.services.sent_frames import stored_request
 from app.services.wire import parse_request, problem_from_wire
@@ -64,15 +62,11 @@ def read_batch(
     Raises:
         ProblemError: 422, the request makes no sense.
     """
-    try:
+    with told_as_problem():
         request = parse_request(body)
         if len(request.targets) > limits.at_all:
             raise InvalidProblem((Fault(("targets",), f"more than {limits.at_all} targets"),))
         problem = problem_from_wire(request, find_frame)
-    except ValidationError as error:
-        raise invalid_request(structural_faults(error)) from None
-    except InvalidProblem as error:
-        raise invalid_request(error.faults) from None
     kept = stored_request(request, problem)
     if as_job or len(problem.targets) > limits.at_once:
         return JobOrder(problem.robot.name, len(problem.targets), resolved_request(kept, problem))

@@ -25,6 +25,7 @@ from app.services.parts import (
     plan_figures,
     solve_part,
 )
+from app.services.selecting import selection_to_json
 from app.services.solver_pool import SolverPool
 from app.services.solver_process import SolverLost
 from app.services.wire import plan_to_wire
@@ -159,6 +160,15 @@ class SolvingService:
         """
         async with self._place():
             return await self._run(read_batch, body, limits, as_job, frames.get)
+
+    async def select(self, body: bytes) -> bytes:
+        """The answer to a large thinning selection; see `app.services.selecting`.
+
+        Raises:
+            ProblemError: 422, the request makes no sense; 503, as for `read`.
+        """
+        async with self._place():
+            return await self._run(selection_to_json, body)
 
     async def motions(
         self, request: str, answer: str, execution_id: str

@@ -11,6 +11,7 @@ import httpx2
 import orjson
 import pytest
 
+from app.body_limit import SMALL_BODY_BYTES
 from app.services.batch_reading import LARGE_BODY_BYTES
 from tests.app.conftest import BODY_LIMIT_BYTES, Server, assert_problem
 
@@ -110,6 +111,28 @@ def test_a_large_batch_in_a_frame_becomes_a_job(server: Server) -> None:
     assert job["targets"] == 6000
     server.client.delete(answer.headers["location"])
     server.client.delete("/v1/frames/large")
+
+
+def test_a_million_blossoms(server: Server) -> None:
+    points = [[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]]
+    blossoms = [{"id": f"{k}", "distance_m": 0.0} for k in range(MILLION // 6)]
+    body = {"branches": [{"id": "b", "points_m": points, "blossoms": blossoms}]}
+    path, content = "/v1/thinning-selections", orjson.dumps(body)
+    assert LARGE_BODY_BYTES < len(content) <= BODY_LIMIT_BYTES
+    headers = {"Content-Type": "application/json"}
+    with others_are_answered(server):
+        answer = server.client.post(path, content=content, headers=headers)
+        assert len(answer.json()["targets"]) == len(blossoms)
+        body["branches"][0]["points_m"] = [[0.0, 0.0, 0.0]]
+        broken = server.client.post(path, content=orjson.dumps(body), headers=headers)
+        assert_problem(broken, 422, "#/branches/0/points_m")
+
+
+@pytest.mark.parametrize("path", ["/v1/executions", "/v1/comparisons", "/v1/robots/tabletop/lease"])
+def test_no_other_route_takes_a_large_body(path: str, server: Server) -> None:
+    content = b" " * (SMALL_BODY_BYTES + 1)
+    headers = {"Content-Type": "application/json"}
+    assert_problem(server.client.post(path, content=content, headers=headers), 413)
 
 
 def test_a_large_body_for_few_targets_is_answered_at_once(server: Server) -> None:
