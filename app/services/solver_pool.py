@@ -64,7 +64,15 @@ class SolverPool:
                 if not process.is_warm:
                     await asyncio.sleep(RESTART_S)
             await asyncio.to_thread(process.end)
-            self._processes[slot] = SolverProcess(self._prepare)
+            self._processes[slot] = await self._started()
+
+    async def _started(self) -> SolverProcess:
+        while True:
+            try:
+                return SolverProcess(self._prepare)
+            except SolverLost:
+                logger.exception("no solver process can be started")
+                await asyncio.sleep(RESTART_S)
 
     async def _serve(self, process: SolverProcess) -> None:
         while True:

@@ -35,14 +35,23 @@ class SolverProcess:
     Args:
         prepare: what it runs first; a function of a module, as it is sent there.
         niceness: added to that of this process, before anything is loaded there.
+
+    Raises:
+        SolverLost: the system starts no process now.
     """
 
     def __init__(self, prepare: Callable[[], None], niceness: int = 0) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, far_end = context.Pipe()
         self._process = context.Process(target=_serve, args=(far_end, niceness), daemon=True)
-        self._process.start()
-        far_end.close()
+        try:
+            self._process.start()
+        except OSError as error:
+            self._pipe.close()
+            raise SolverLost from error
+        finally:
+            far_end.close()
+        self._ending = threading.Lock()
         # Sending and receiving block, so they have a thread; it is also what keeps tasks in order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="solver-process")
         self._ready: Future[None] = self._thread.submit(self._begin, prepare)
@@ -100,11 +109,12 @@ class SolverProcess:
         return result
 
     def end(self) -> None:
-        """End it at once, whatever it does; this blocks until it is gone."""
-        self._process.kill()
-        self._process.join()
-        self._thread.shutdown()
-        self._pipe.close()
+        """End it at once, whatever it does; this blocks until it is gone, and may be repeated."""
+        with self._ending:
+            self._process.kill()
+            self._process.join()
+            self._thread.shutdown()
+            self._pipe.close()
 
 
 def _serve(pipe: Connection, niceness: int) -> None:

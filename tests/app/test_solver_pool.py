@@ -4,6 +4,7 @@ import os
 import signal
 import time
 from collections.abc import Awaitable, Callable
+from multiprocessing.context import SpawnProcess
 from pathlib import Path
 
 import pytest
@@ -113,6 +114,26 @@ def test_closing_ends_what_runs_and_what_waits() -> None:
         assert [type(end) for end in ends] == [asyncio.CancelledError] * 3
 
     asyncio.run(test())
+
+
+def test_a_system_that_starts_no_process_is_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test(pool: SolverPool) -> None:
+        doomed = await pool.run(_pid_after, 0.0)
+        refusals = iter([OSError("no more processes")] * 2)
+        start = SpawnProcess.start
+
+        def start_later(process: SpawnProcess) -> None:
+            for refusal in refusals:
+                raise refusal
+            start(process)
+
+        monkeypatch.setattr(SpawnProcess, "start", start_later)
+        os.kill(doomed, signal.SIGKILL)
+        await asyncio.sleep(0.3)
+        assert await pool.run(_pid_after, 0.0) != doomed
+        assert next(refusals, None) is None
+
+    run(test)
 
 
 def test_one_that_cannot_be_prepared_is_started_again(tmp_path: Path) -> None:
