@@ -52,9 +52,11 @@ def _describe(operation: dict[str, Any], row: tuple[str, str]) -> None:
         )
     described = {str(code): what for code, what in problem_answers(*statuses).items()}
     operation["responses"] = described | operation["responses"]
-    for status in ("429", "503"):
+    leasing = row in LEASED or row == ("POST", "/v1/robots/{name}/lease")
+    for status in ("409", "429", "503") if leasing else ("429", "503"):
         if status in operation["responses"]:
             operation["responses"][status].setdefault("headers", {})["Retry-After"] = {
-                "description": "seconds after which it makes sense to try again",
+                "description": "seconds after which it makes sense to try again"
+                + (", if the robot is leased" if status == "409" else ""),
                 "schema": {"type": "integer", "minimum": 0},
             }

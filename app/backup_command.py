@@ -11,6 +11,7 @@ import typer
 from sqlalchemy import URL
 
 from app.refusals import fail
+from app.settings_command import SettingsFile, settings_or_fail
 
 BUSY_TIMEOUT_S = 10.0
 
@@ -24,15 +25,15 @@ def backup(
     data_dir: Annotated[
         Path | None, typer.Option(help="Folder of the database [prunus-data].")
     ] = None,
+    settings: SettingsFile = None,
 ) -> None:
     """Copy the embedded database to one file; the service may run. Ends with 1 without a copy."""
-    from app.settings import Settings
-
-    settings = Settings() if data_dir is None else Settings(data_dir=data_dir)
+    url = settings_or_fail(settings, {"data_dir": data_dir}).resolved_database_url
     try:
-        back_up(settings.resolved_database_url, output)
+        back_up(url, output)
     except CannotBackUp as error:
         fail(str(error), code=1)
+    typer.echo(f"{url.database} is copied to {output}", err=True)
 
 
 def back_up(url: URL, output: Path) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.refusals import fail
+from app.settings_command import SettingsFile, settings_or_fail
 
 if TYPE_CHECKING:
     from app.store import TokenRow, TokenStore
@@ -37,6 +38,7 @@ def create_token(
     ],
     data_dir: DataDir = None,
     database_url: DatabaseUrl = None,
+    settings: SettingsFile = None,
 ) -> None:
     """Make a token and print it, once: only a digest of it is kept."""
     from app.services.tokens import BadToken, new_token
@@ -45,7 +47,7 @@ def create_token(
         token, row = new_token(name, scope)
     except BadToken as error:
         fail(str(error))
-    with _store(data_dir, database_url) as store:
+    with _store(data_dir, database_url, settings, may_be_new=True) as store:
         store.add(row)
     typer.echo(token)
     typer.echo(f"token {row.id}: {', '.join(row.scopes)}; it is not shown again", err=True)
@@ -56,11 +58,12 @@ def list_tokens(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
     data_dir: DataDir = None,
     database_url: DatabaseUrl = None,
+    settings: SettingsFile = None,
 ) -> None:
     """Show every token but its secret, the oldest first."""
     import orjson
 
-    with _store(data_dir, database_url) as store:
+    with _store(data_dir, database_url, settings) as store:
         rows = store.all()
     if as_json:
         typer.echo(orjson.dumps({"tokens": [_to_json(row) for row in rows]}).decode())
@@ -76,9 +79,10 @@ def revoke_token(
     token_id: Annotated[str, typer.Argument(metavar="ID", help="As in the list; not the token.")],
     data_dir: DataDir = None,
     database_url: DatabaseUrl = None,
+    settings: SettingsFile = None,
 ) -> None:
     """Make a token invalid for ever. What it holds open is closed."""
-    with _store(data_dir, database_url) as store:
+    with _store(data_dir, database_url, settings) as store:
         row = store.revoke(token_id)
     if row is None or row.revoked_at is None:
         fail("there is no token of this id")
@@ -86,20 +90,20 @@ def revoke_token(
 
 
 @contextmanager
-def _store(data_dir: Path | None, database_url: str | None) -> "Iterator[TokenStore]":
-    from pydantic import ValidationError
+def _store(
+    data_dir: Path | None, database_url: str | None, file: Path | None, *, may_be_new: bool = False
+) -> "Iterator[TokenStore]":
     from sqlalchemy.exc import SQLAlchemyError
 
-    from app.settings import Settings
     from app.store import TokenStore, open_engine
 
     given = {"data_dir": data_dir, "database_url": database_url}
+    url = settings_or_fail(file, given).resolved_database_url
+    embedded = url.get_backend_name() == "sqlite"
+    if embedded and not may_be_new and not Path(str(url.database)).exists():
+        fail(f"there is no database {url.database}", code=1)
     try:
-        settings = Settings(**{key: value for key, value in given.items() if value is not None})  # type: ignore[arg-type]
-        engine = open_engine(settings.resolved_database_url)
-    except ValidationError as error:
-        names = ", ".join(f"PRUNUS_{entry['loc'][0]}".upper() for entry in error.errors())
-        fail(f"settings that make no sense: {names}", code=1)
+        engine = open_engine(url)
     except (OSError, SQLAlchemyError):
         # A driver's message may have the URL in it, and that the password.
         fail("the store cannot be opened", code=1)

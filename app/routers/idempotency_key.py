@@ -35,16 +35,21 @@ CREATED_HEADERS: Final[dict[str, Any]] = {
 """The OpenAPI description of the headers of an answer to a request that creates."""
 
 
-def with_key(operation: dict[str, Any]) -> dict[str, Any]:
-    """The OpenAPI description of an operation that takes the header."""
+FOR_EVER: Final = (
+    "The same key with the same body creates once and gets the first answer again, for ever; with "
+    "another body it gets 422. Errors are not kept."
+)
+
+
+def with_key(operation: dict[str, Any], meaning: str = FOR_EVER) -> dict[str, Any]:
+    """The OpenAPI description of an operation that takes the header, and what it does there."""
     parameter = {
         "name": HEADER,
         "in": "header",
         "required": False,
-        "description": "A text of the client's own, new for every new request and the same for its "
-        "repetitions. The same key with the same body creates once and gets the first answer again,"
-        " for ever; with another body it gets 422. Errors are not kept. Without it, a request whose"
-        " answer was lost must not be sent again.",
+        "description": "A text of the client's own, new for every new request and the same for "
+        f"its repetitions. {meaning} Without it, a request whose answer was lost must not be sent "
+        "again.",
         "schema": {
             "type": "string",
             "minLength": 1,

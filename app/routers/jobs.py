@@ -8,6 +8,7 @@ import orjson
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool
+from starlette.types import Send
 
 from app.routers.common import NDJSON, problem_answers, wants_lines
 from app.schemas.jobs import JobAnswer, JobResultsAnswer, JobsAnswer
@@ -107,7 +108,7 @@ def _event(job: JobRow) -> bytes:
         200: {
             "model": JobResultsAnswer,
             "description": f"With Accept: {NDJSON} the approaches one a line, as they come, until "
-            "the job has ended",
+            "the job has ended; cut off when the service ends before",
         },
         **problem_answers(404, 500),
     },
@@ -122,7 +123,21 @@ async def get_job_results(job_id: str, request: Request) -> Response:
         return StreamingResponse(pieces, media_type="application/json", headers=headers)
     changes = service.changes(job_id, HEARTBEAT_S)
     lines = _following(store, job_id, await anext(changes), changes)
-    return StreamingResponse(lines, media_type=NDJSON, headers=headers)
+    return _Lines(lines, media_type=NDJSON, headers=headers)
+
+
+class _CutShort(Exception):
+    """The service ends before the job."""
+
+
+class _Lines(StreamingResponse):
+    async def stream_response(self, send: Send) -> None:
+        try:
+            await super().stream_response(send)
+        except _CutShort:
+            # Without its last piece the answer is not whole, and the server cuts the connection:
+            # nobody takes some of the results for all.
+            return
 
 
 def _array(store: PlanStore, job_id: str) -> Iterator[bytes]:
@@ -146,7 +161,7 @@ async def _following(
         try:
             job = await anext(changes)
         except StopAsyncIteration:
-            return
+            raise _CutShort from None
 
 
 def job_document(job: JobRow) -> dict[str, Any]:

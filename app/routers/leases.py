@@ -1,5 +1,7 @@
 """Leases of robots: one controlling client each."""
 
+from typing import Final
+
 import orjson
 from fastapi import APIRouter, Request, Response
 from pydantic import MISSING
@@ -11,6 +13,11 @@ from app.routers.idempotency_key import CREATED_HEADERS, REPLAYED, new_key, with
 from app.schemas.leases import LeaseAnswer, LeaseRenewal, LeaseRequest, LeaseStateAnswer
 from app.services.execution_checks import robot_instance
 from app.services.leases import USUAL_LEASE_S, Lease, LeaseService
+
+AS_LONG_AS_IT_LASTS: Final = (
+    "As long as the lease lasts, the same key with the same body gets it again, as it stands then, "
+    "and with another body 422. A lease that has ended is forgotten, with its key."
+)
 
 router = APIRouter(prefix="/v1/robots/{name}/lease", tags=["robots"])
 
@@ -27,7 +34,7 @@ router = APIRouter(prefix="/v1/robots/{name}/lease", tags=["robots"])
         },
         **problem_answers(404, 408, 409, 413, 415, 422, 500),
     },
-    openapi_extra=with_key(body_of(LeaseRequest)),
+    openapi_extra=with_key(body_of(LeaseRequest), AS_LONG_AS_IT_LASTS),
 )
 async def create_lease(name: str, request: Request) -> Response:
     """While it lasts, only requests with the header `Prunus-Lease` start and change executions.

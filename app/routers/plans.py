@@ -54,7 +54,13 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
         },
         202: {
             "model": JobAnswer,
-            "headers": CREATED_HEADERS,
+            "headers": {
+                **CREATED_HEADERS,
+                "Preference-Applied": {
+                    "description": f"`{RESPOND_ASYNC}` if it was preferred; else absent",
+                    "schema": {"type": "string"},
+                },
+            },
             "description": "Taken on as a job; Location has its progress",
         },
         **problem_answers(408, 413, 415, 422, 500, 503),

@@ -34,8 +34,11 @@ class JobProcess:
         """Make a job ready; what its batch decided as one, as text.
 
         Raises:
+            SolverNotStarted: there is no process now.
             SolverLost: the process died, or was ended.
         """
+        if self._process is not None and not self._process.is_alive:
+            await self.end()  # it died idle, and no job is to blame
         if self._process is None:
             self._process = SolverProcess(partial(prepare, self._logs), NICENESS)
         await self._run(load_job, job_id, work.request, work.choice)

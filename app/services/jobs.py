@@ -19,7 +19,8 @@ from app.logs import LogOptions
 from app.services.batch_reading import JobOrder
 from app.services.job_process import JobProcess
 from app.services.measures import Measures
-from app.services.solver_process import SolverLost
+from app.services.solver_pool import RESTART_S
+from app.services.solver_process import SolverLost, SolverNotStarted
 from app.services.store_calls import store_call
 from app.store import JobEnded, JobRow, JobStore, KeyTaken, NewKey, new_entry
 from app.store.failures import StoreBusy
@@ -27,8 +28,9 @@ from app.store.jobs import CANCELED, FAILED
 
 logger = logging.getLogger(__name__)
 
-ATTEMPTS: Final = 2
-"""How often a part is tried whose process died: once more, as it need not be to blame."""
+PAUSES_S: Final = (0.0, 1.0, 5.0, 15.0)
+"""Before the next tries of a part whose process died. It need not be to blame: when memory runs
+out, whatever runs is killed, and that may go on for a while."""
 
 FULL_RETRY_S: Final = 30
 STORE_RETRY_S: Final = 2.0
@@ -237,6 +239,9 @@ class JobService:
                 # What is stored is whole. Nothing is lost by waiting until the store is back.
                 logger.exception("the store failed job", extra={"job_id": job_id})
                 await asyncio.sleep(STORE_RETRY_S)
+            except SolverNotStarted:
+                logger.exception("no process for jobs can be started", extra={"job_id": job_id})
+                await asyncio.sleep(RESTART_S)
             except SolverLost:
                 if active.canceled:
                     return
@@ -244,9 +249,10 @@ class JobService:
                 with contextlib.suppress(SQLAlchemyError):
                     done = (await self.job(job_id)).done
                     died, progress = (died + 1, done) if done == progress else (1, done)
-                if died >= ATTEMPTS:
-                    await self._fail(job_id, "the solver was lost over it twice")
+                if died > len(PAUSES_S):
+                    await self._fail(job_id, f"the solver was lost over it {died} times")
                     return
+                await self._wait(active.changed, PAUSES_S[died - 1])  # a cancel is a change
             except Exception:
                 logger.exception("job could not be solved", extra={"job_id": job_id})
                 await self._fail(job_id, "it could not be solved; the service's log says more")

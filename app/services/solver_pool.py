@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
-from app.services.solver_process import SolverLost, SolverProcess
+from app.services.solver_process import SolverLost, SolverNotStarted, SolverProcess
 
 logger = logging.getLogger(__name__)
 
@@ -14,6 +14,9 @@ Result = TypeVar("Result")
 
 RESTART_S: Final = 1.0
 """Between two tries to start a process that cannot be prepared."""
+
+IDLE_LOOK_S: Final = 1.0
+"""So often one that has nothing to do is looked at; the service is not ready without it."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class SolverPool:
 
     @property
     def is_warm(self) -> bool:
-        """Whether every process has been prepared."""
+        """Whether every process has been prepared and lives."""
         return all(process.is_warm for process in self._processes)
 
     async def run(self, work: Callable[..., Result], *arguments: Any) -> Result:
@@ -55,13 +58,14 @@ class SolverPool:
 
     async def _keep(self, slot: int) -> None:
         while True:
-            process = self._processes[slot]
+            process, warmed = self._processes[slot], False
             try:
                 await process.ready()
+                warmed = True
                 await self._serve(process)
             except SolverLost:
                 logger.error("a solver process died; another is started")
-                if not process.is_warm:
+                if not warmed:
                     await asyncio.sleep(RESTART_S)
             await asyncio.to_thread(process.end)
             self._processes[slot] = await self._started()
@@ -70,13 +74,19 @@ class SolverPool:
         while True:
             try:
                 return SolverProcess(self._prepare)
-            except SolverLost:
+            except SolverNotStarted:
                 logger.exception("no solver process can be started")
                 await asyncio.sleep(RESTART_S)
 
     async def _serve(self, process: SolverProcess) -> None:
         while True:
-            task = await self._tasks.get()
+            try:
+                async with asyncio.timeout(IDLE_LOOK_S):
+                    task = await self._tasks.get()
+            except TimeoutError:
+                if not process.is_alive:
+                    raise SolverLost from None
+                continue
             if task.answer.done():
                 continue  # nobody waits for it any more
             if not process.is_alive:

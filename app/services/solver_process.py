@@ -29,6 +29,10 @@ class SolverLost(Exception):
     """A solver process died, or was ended, over what it was given or before."""
 
 
+class SolverNotStarted(SolverLost):
+    """The system starts no process now; whatever it was for is not to blame."""
+
+
 class SolverProcess:
     """Started at once; it ends with the process that started it, however that ends.
 
@@ -37,24 +41,27 @@ class SolverProcess:
         niceness: added to that of this process, before anything is loaded there.
 
     Raises:
-        SolverLost: the system starts no process now.
+        SolverNotStarted: no process can be started.
     """
 
     def __init__(self, prepare: Callable[[], None], niceness: int = 0) -> None:
         context = multiprocessing.get_context("spawn")
-        self._pipe, far_end = context.Pipe()
-        self._process = context.Process(target=_serve, args=(far_end, niceness), daemon=True)
         try:
-            self._process.start()
+            self._pipe, far_end = context.Pipe()
         except OSError as error:
-            self._pipe.close()
-            raise SolverLost from error
-        finally:
-            far_end.close()
-        self._ending = threading.Lock()
+            raise SolverNotStarted from error
+        self._process = context.Process(target=_serve, args=(far_end, niceness), daemon=True)
         # Sending and receiving block, so they have a thread; it is also what keeps tasks in order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="solver-process")
-        self._ready: Future[None] = self._thread.submit(self._begin, prepare)
+        self._ending = threading.Lock()
+        try:
+            self._process.start()
+            self._ready: Future[None] = self._thread.submit(self._begin, prepare)
+        except (OSError, RuntimeError) as error:  # no process, or no thread
+            self.end()
+            raise SolverNotStarted from error
+        finally:
+            far_end.close()
 
     @property
     def is_alive(self) -> bool:
@@ -63,8 +70,9 @@ class SolverProcess:
 
     @property
     def is_warm(self) -> bool:
-        """Whether it has been prepared."""
-        return self._ready.done() and self._ready.exception() is None
+        """Whether it has been prepared and lives."""
+        prepared = self._ready.done() and self._ready.exception() is None
+        return prepared and self.is_alive
 
     async def ready(self) -> None:
         """Wait until it is prepared.
@@ -111,8 +119,9 @@ class SolverProcess:
     def end(self) -> None:
         """End it at once, whatever it does; this blocks until it is gone, and may be repeated."""
         with self._ending:
-            self._process.kill()
-            self._process.join()
+            if self._process.pid is not None:
+                self._process.kill()
+                self._process.join()
             self._thread.shutdown()
             self._pipe.close()
 

@@ -11,6 +11,7 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import URL, Connection, Engine, create_engine, event
 
+from app.store.failures import StoreBusy
 from app.store.postgresql import connect_postgresql
 
 # A writing transaction lasts milliseconds; one that waits longer than this waits for something
@@ -69,15 +70,18 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
     SQLite lets one write at a time, and has the others ask again after sleeps of up to 100 ms. So
     those of one engine take turns before they ask; other processes are left to SQLite.
+
+    Raises:
+        StoreBusy: it did not come to its turn; nothing was begun.
     """
     turn: threading.Lock | None = engine.get_execution_options().get("prunus_turn")
-    # Without a turn after that long, SQLite says what is the matter.
-    taken = turn is not None and turn.acquire(timeout=BUSY_TIMEOUT_MS / 1e3)
+    if turn is not None and not turn.acquire(timeout=BUSY_TIMEOUT_MS / 1e3):
+        raise StoreBusy(f"others have been waiting to write for {BUSY_TIMEOUT_MS} ms")
     try:
         with engine.execution_options(prunus_writes=True).begin() as connection:
             yield connection
     finally:
-        if turn is not None and taken:
+        if turn is not None:
             turn.release()
 
 

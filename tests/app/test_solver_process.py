@@ -2,6 +2,7 @@ import asyncio
 import contextlib
 import os
 import random
+import resource
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from typing import Any, NoReturn
 
 import pytest
 
-from app.services.solver_process import SolverLost, SolverProcess
+from app.services.solver_process import SolverLost, SolverNotStarted, SolverProcess
 from tests.app.conftest import REPOSITORY, wait_until
 
 END_S = 30
@@ -114,6 +115,27 @@ def test_one_that_is_ended_over_its_work_is_lost() -> None:
             call(process, _pid).result(END_S)
         process.end()
     assert not process.is_alive
+
+
+def test_what_cannot_even_be_started_is_said_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (3, hard))  # no file more
+    try:
+        with pytest.raises(SolverNotStarted):
+            SolverProcess(prepare=_nothing)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+    def fail(*_: Any) -> NoReturn:
+        raise RuntimeError("can't start new thread")
+
+    for broken in ("multiprocessing.context.SpawnProcess.start", "threading.Thread.start"):
+        with monkeypatch.context() as patch:
+            patch.setattr(broken, fail)
+            with pytest.raises(SolverNotStarted):
+                SolverProcess(prepare=_nothing)
+    with running() as process:
+        assert call(process, _bytes, 1).result(END_S) == b"\0"
 
 
 def test_one_that_cannot_start_is_lost() -> None:

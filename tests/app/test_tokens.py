@@ -125,6 +125,7 @@ def test_the_command_makes_lists_and_revokes(store: TokenStore, tmp_path: Path) 
     assert "revoked" in run(tmp_path, "list")[1]
 
 
+@pytest.mark.usefixtures("store")
 def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
     for arguments in (
         ("create", "--name", "x", "--scope", "fly"),
@@ -135,6 +136,40 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
         assert code == 2
         assert said == ""
         assert len(complaint.splitlines()) == 1
+
+
+def test_commands_take_the_services_settings(
+    store: TokenStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or a token is made, or a copy, of another database than the service's."""
+    file, elsewhere = tmp_path / "prunus.toml", tmp_path / "elsewhere"
+    file.write_text(f'data_dir = "{tmp_path}"')
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    made = CliRunner().invoke(
+        cli, ["token", "create", "--name", "eye", "--scope", "plan", "--settings", str(file)]
+    )
+    assert made.exit_code == 0
+    assert [row.name for row in store.all()] == ["eye"]
+    monkeypatch.setenv("PRUNUS_SETTINGS", str(file))
+    copied = CliRunner().invoke(cli, ["backup", "copy.sqlite3"])
+    assert copied.exit_code == 0
+    assert str(tmp_path / "prunus.sqlite3") in copied.stderr
+    assert [path.name for path in elsewhere.iterdir()] == ["copy.sqlite3"]
+    monkeypatch.setenv("PRUNUS_DATADIR", str(tmp_path))
+    for arguments in (["backup", "other.sqlite3"], ["token", "list"]):
+        refused = CliRunner().invoke(cli, arguments)
+        assert refused.exit_code == 1
+        assert "PRUNUS_DATADIR" in refused.stderr
+
+
+def test_no_database_is_made_to_look_for_tokens(tmp_path: Path) -> None:
+    for arguments in (["list"], ["revoke", "000000000000"]):
+        command = ["token", *arguments, "--data-dir", str(tmp_path / "typo")]
+        refused = CliRunner().invoke(cli, command)
+        assert refused.exit_code == 1
+        assert "there is no database" in refused.stderr
+    assert not (tmp_path / "typo").exists()
 
 
 def test_a_database_that_is_not_there_is_one_line_without_its_password(tmp_path: Path) -> None:
