@@ -92,7 +92,7 @@ def _circumstances(subject: Subject, document: dict[str, Any]) -> str:
     text = (
         f"`{subject.command}`, {about['date']}, {cores} of {about['processor']} "
         f"({about['cores']} cores, {about['memory_gib']} GiB, {about['system']}, load at the start "
-        f"{about['load_average']}); Python {about['python']}, {versions}."
+        f"{about.get('load_average', 'not noted')}); Python {about['python']}, {versions}."
     )
     if document["quick"]:
         text += " **Quick run: small sets and few runs, for a first look only.**"

@@ -7,7 +7,6 @@ from typing import Any, Final
 
 from bench.measure import Row
 from bench.registry import Subject
-from solver.comparison.machine import machine
 
 FOLDER: Final = Path(__file__).parent / "results"
 
@@ -40,10 +39,25 @@ def write(folder: Path, document: dict[str, Any]) -> None:
 
 
 def write_and_print(
-    folder: Path, subject: Subject, rows: list[Row], *, quick: bool, elapsed_s: float
+    folder: Path,
+    subject: Subject,
+    rows: list[Row],
+    about: dict[str, Any],
+    *,
+    quick: bool,
+    elapsed_s: float,
 ) -> int:
-    """Write a subject's results and print them; 1 if a figure is missed."""
-    write(folder, as_document(subject, rows, machine(), quick, elapsed_s))
+    """Write a subject's results and print them; 1 if a figure is missed.
+
+    Args:
+        folder: where to.
+        subject: that was measured.
+        rows: of its report.
+        about: the machine as it was at the start.
+        quick: whether the sets were small.
+        elapsed_s: how long it took.
+    """
+    write(folder, as_document(subject, rows, about, quick, elapsed_s))
     for line in rows:
         verdict = {True: "reached", False: "NOT REACHED", None: ""}[line.reached]
         print(f"{line.name}: {line.value} {line.unit} {line.wanted} {verdict} {line.note}")

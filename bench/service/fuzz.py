@@ -34,6 +34,7 @@ from bench.measure import Row, row
 from bench.registry import FUZZING
 from bench.results import FOLDER, write_and_print
 from bench.service.load import live_server
+from solver.comparison.machine import machine
 
 EXPECTED_503: Final = ("no_worker", "jobs_full", "comparisons_full")
 CASES: Final = 2000
@@ -67,7 +68,7 @@ def main() -> int:
     parser.add_argument("--phases", nargs="+", choices=PHASES, default=PHASES)
     parser.add_argument("--output", type=Path, default=FOLDER)
     given = parser.parse_args()
-    began = time.perf_counter()
+    about, began = machine(), time.perf_counter()
     with live_server(UNLIMITED) as (_, port):
         url = f"http://127.0.0.1:{port}"
         fuzzed = fuzz(url, given.cases, seed=given.seed, phases=given.phases)
@@ -78,7 +79,7 @@ def main() -> int:
     rows = [_row(fuzzed, given.cases)]
     quick = given.cases < CASES or set(given.phases) != set(PHASES)
     elapsed_s = time.perf_counter() - began
-    return write_and_print(given.output, FUZZING, rows, quick=quick, elapsed_s=elapsed_s)
+    return write_and_print(given.output, FUZZING, rows, about, quick=quick, elapsed_s=elapsed_s)
 
 
 def _row(fuzzed: Fuzzed, cases: int) -> Row:

@@ -48,6 +48,7 @@ from bench.service.kill_load import (
 )
 from bench.service.killed_service import DATA, KilledService
 from bench.service.postgresql import INSTALL, PostgresqlServer, find_programs
+from solver.comparison.machine import machine
 
 SQLITE, POSTGRESQL = "sqlite", "postgresql"
 ROUNDS = 100
@@ -205,7 +206,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--output", type=Path, default=FOLDER)
     given = parser.parse_args()
-    began = time.perf_counter()
+    about, began = machine(), time.perf_counter()
     rows = []
     for database in given.database or (SQLITE, POSTGRESQL):
         with ExitStack() as stack:
@@ -216,7 +217,7 @@ def main() -> int:
         rows.append(_row(report))
     elapsed_s = time.perf_counter() - began
     quick = given.rounds < ROUNDS
-    return write_and_print(given.output, KILLS, rows, quick=quick, elapsed_s=elapsed_s)
+    return write_and_print(given.output, KILLS, rows, about, quick=quick, elapsed_s=elapsed_s)
 
 
 def _url(stack: ExitStack, database: str) -> str:

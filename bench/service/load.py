@@ -24,6 +24,7 @@ from bench.service.batches import Batches
 from bench.service.client import Client
 from bench.service.memory import sample, slope_kib_per_min
 from bench.service.mixed import Tally, mixed_load
+from solver.comparison.machine import machine
 
 SSAS_MS: Final = 150.0
 NCOS_OVERHEAD_PERCENT: Final = 15.0
@@ -44,14 +45,14 @@ def main() -> int:
     parser.add_argument("--runs", type=int, default=15)
     parser.add_argument("--output", type=Path, default=FOLDER)
     given = parser.parse_args()
-    began = time.perf_counter()
+    about, began = machine(), time.perf_counter()
     # The load must not hold itself up: a collection of all that is imported here takes 0.1 s.
     keep_for_good()
     with live_server() as (pid, port):
         rows = asyncio.run(_measure(pid, port, given))
     quick = given.mixed_s < 1800
     elapsed_s = time.perf_counter() - began
-    return write_and_print(given.output, SERVICE, rows, quick=quick, elapsed_s=elapsed_s)
+    return write_and_print(given.output, SERVICE, rows, about, quick=quick, elapsed_s=elapsed_s)
 
 
 @contextlib.contextmanager
