@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from app.schemas.problem_details import MEDIA_TYPE
-from app.store.failures import StoreFailure, cause_of, failure_of
+from app.store.failures import StoreBusy, StoreFailure, cause_of, failure_of
 from solver import Fault, InvalidProblem
 
 logger = logging.getLogger(__name__)
@@ -154,6 +154,8 @@ def install_error_handlers(app: FastAPI) -> None:
         problem = store_problem(error)
         if problem is None:
             raise error
+        if isinstance(error, StoreBusy):
+            request.app.state.metrics.store_failed()  # the engine, which counts, has not seen it
         logger.warning("%s: %s", problem.code, cause_of(error))
         return await expected(request, problem)
 

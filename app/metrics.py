@@ -83,7 +83,9 @@ class Metrics:
             "prunus_executions", "Stored executions.", ("status",), registry=registry
         )
         self._store_errors = Counter(
-            "prunus_store_errors", "Errors that the database reported.", registry=registry
+            "prunus_store_errors",
+            "Errors that the database reported, and calls that waited for it in vain.",
+            registry=registry,
         )
 
     def request_started(self) -> None:

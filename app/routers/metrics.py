@@ -8,6 +8,7 @@ from app.routers.common import problem_answers
 from app.services.links import LinkService
 from app.services.store_calls import store_call
 from app.store.counts import stored_counts
+from app.store.failures import StoreBusy
 
 router = APIRouter(tags=["health"])
 
@@ -29,6 +30,8 @@ async def get_metrics(request: Request) -> Response:
     metrics.connected(links.count)
     try:
         counts = await store_call(stored_counts, request.app.state.engine)
+    except StoreBusy:
+        metrics.store_failed()
     except SQLAlchemyError:
         pass  # counted, where the engine reports errors
     else:

@@ -38,16 +38,3 @@ class Measures(Protocol):
 
     def solver_lost(self) -> None:
         """A solver process died."""
-
-
-class NoMeasures:
-    """Counts nothing."""
-
-    def solver_load(self, running: int, waiting: int) -> None:
-        """Nothing."""
-
-    def solved(self, figures: PlanFigures) -> None:
-        """Nothing."""
-
-    def solver_lost(self) -> None:
-        """Nothing."""

@@ -1,5 +1,6 @@
 """The service as a process that is killed, with everything it started, and started again."""
 
+import contextlib
 import os
 import signal
 import socket
@@ -72,11 +73,9 @@ class KilledService:
             while time.monotonic() < deadline:
                 if self._process is None or self._process.poll() is not None:
                     break
-                try:
+                with contextlib.suppress(httpx2.TransportError):  # it does not listen yet
                     if client.get(path).status_code == 200:
                         return
-                except httpx2.TransportError:
-                    pass
                 time.sleep(POLL_S)
         raise ServiceDied(self.log.read_text(errors="replace")[-2000:])
 

@@ -15,10 +15,10 @@ from sqlalchemy import URL
 from sqlalchemy.exc import OperationalError
 
 from app.logs import LogOptions
+from app.metrics import Metrics
 from app.services.batch_reading import JobOrder
 from app.services.job_process import JobProcess
 from app.services.jobs import JobService
-from app.services.measures import NoMeasures
 from app.services.solver_process import SolverLost
 from app.store import JobStore, open_engine
 from tests.app.conftest import Server, assert_problem, running_server, wait_until
@@ -286,7 +286,7 @@ def test_a_job_whose_commit_is_in_doubt_is_worked_on(
 
     async def create() -> int:
         service = JobService(
-            store, workers=1, most_waiting=3, logs=LogOptions(), measures=NoMeasures(),
+            store, workers=1, most_waiting=3, logs=LogOptions(), measures=Metrics("1"),
             stopping=asyncio.Event(),
         )  # fmt: skip
         with pytest.raises(OperationalError):

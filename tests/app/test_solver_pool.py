@@ -94,11 +94,13 @@ def test_one_that_dies_idle_costs_nobody_anything() -> None:
 
 def test_one_that_dies_idle_is_replaced_before_anybody_asks() -> None:
     async def test(pool: SolverPool) -> None:
-        os.kill(await pool.run(_pid_after, 0.0), signal.SIGKILL)
+        doomed = await pool.run(_pid_after, 0.0)
+        os.kill(doomed, signal.SIGKILL)
         while pool.is_warm:
             await asyncio.sleep(0.01)
         while not pool.is_warm:
             await asyncio.sleep(0.01)
+        assert await pool.run(_pid_after, 0.0) != doomed
 
     run(test)
 

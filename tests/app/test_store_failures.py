@@ -1,7 +1,9 @@
 """A lost, locked or hung database: clear answers, and recovery without help."""
 
+import concurrent.futures
 import contextlib
 import os
+import re
 import resource
 import signal
 import sqlite3
@@ -55,9 +57,21 @@ def test_locked_and_taken_sqlite(on_sqlite: Server, request_body: Body) -> None:
     path = server.data_dir / "prunus.sqlite3"
     with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN EXCLUSIVE")
-        assert_unavailable(server.client.post("/v1/plans", json=request_body))
+        with concurrent.futures.ThreadPoolExecutor(3) as executor:
+            # One waits for the other program, two for their turn behind it.
+            posting = [
+                executor.submit(server.client.post, "/v1/plans", json=request_body)
+                for _ in range(3)
+            ]
+            for one in posting:
+                assert_unavailable(one.result())
         assert server.client.get("/healthz").status_code == 200
         other.execute("ROLLBACK")
+    failures = re.search(
+        r"^prunus_store_errors_total (\S+)", server.client.get("/metrics").text, re.MULTILINE
+    )
+    assert failures is not None
+    assert float(failures[1]) >= 3
     assert server.stored_plans() == 0
     assert server.client.post("/v1/plans", json=request_body).status_code == 201
     assert server.stored_plans() == 1
