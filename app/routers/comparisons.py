@@ -55,7 +55,7 @@ async def create_comparison(request: Request) -> Response:
     body = await json_body(request)
 
     async def create(key: NewKey | None) -> Response:
-        given = ComparisonRequest.model_validate_json(body)
+        given = ComparisonRequest.from_json(body)
         document = await _service(request).create(
             given.scenario,
             None if given.methods is MISSING else tuple(given.methods),

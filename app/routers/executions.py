@@ -42,7 +42,7 @@ async def create_execution(request: Request) -> Response:
     body = await json_body(request)
 
     async def create(key: NewKey | None) -> Response:
-        given = ExecutionRequest.model_validate_json(body)
+        given = ExecutionRequest.from_json(body)
         execution = await _service(request).create(
             given.plan_id, given.robot, key, lease_id=lease_of(request)
         )

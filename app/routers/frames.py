@@ -56,9 +56,7 @@ async def put_frame(name: Name, request: Request) -> Response:
     scaled or mirrored; it is registered all the same. Plans that exist do not change.
     """
     body = await json_body(request)
-    stored = await store_call(
-        lambda: _service(request).put(name, FrameRequest.model_validate_json(body))
-    )
+    stored = await store_call(lambda: _service(request).put(name, FrameRequest.from_json(body)))
     if stored.is_new:
         return _created(name, stored.document)
     return Response(stored.document, media_type="application/json")
@@ -85,9 +83,7 @@ async def register_frame(name: Name, request: Request) -> Response:
 
     async def create(key: NewKey | None) -> Response:
         stored = await store_call(
-            lambda: _service(request).register(
-                name, FrameRegistrationRequest.model_validate_json(body), key
-            )
+            lambda: _service(request).register(name, FrameRegistrationRequest.from_json(body), key)
         )
         return _created(name, stored.document)
 

@@ -43,7 +43,7 @@ async def create_lease(name: str, request: Request) -> Response:
     gives the same lease again as long as it lasts, with the time when it ends now.
     """
     body = await json_body(request)
-    given = LeaseRequest.model_validate_json(body)
+    given = LeaseRequest.from_json(body)
     await run_in_threadpool(robot_instance, name)
     duration_s = USUAL_LEASE_S if given.duration_s is MISSING else given.duration_s
     key = await new_key(request, body)
@@ -79,7 +79,7 @@ async def get_lease(name: str, request: Request) -> Response:
 )
 async def renew_lease(name: str, lease_id: str, request: Request) -> Response:
     """It lasts from now on. Renew it well before it ends: after that it is 404."""
-    given = LeaseRenewal.model_validate_json(await json_body(request))
+    given = LeaseRenewal.from_json(await json_body(request))
     await run_in_threadpool(robot_instance, name)
     duration_s = None if given.duration_s is MISSING else given.duration_s
     return _answer(_service(request).renew(name, lease_id, duration_s), 200, {})

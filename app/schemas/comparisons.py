@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import MISSING, BaseModel, Field
 
 from app.schemas.comparison_results import ComparisonResultAnswer
-from app.schemas.requests import StrictBody
+from app.schemas.strict_body import StrictBody
 
 
 class ComparisonRequest(StrictBody):

@@ -5,7 +5,7 @@ Clients must expect new fields and new values of every status and code.
 
 from pydantic import MISSING, BaseModel, Field
 
-from app.schemas.requests import StrictBody
+from app.schemas.strict_body import StrictBody
 
 
 class ExecutionRequest(StrictBody):

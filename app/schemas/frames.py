@@ -8,7 +8,8 @@ from typing import Annotated
 
 from pydantic import MISSING, BaseModel, Field
 
-from app.schemas.requests import Quaternion, StrictBody, Vector
+from app.schemas.requests import Quaternion, Vector
+from app.schemas.strict_body import StrictBody
 
 
 class PointPairBody(StrictBody):

@@ -6,9 +6,10 @@ outside, with its own pointers.
 
 from typing import Annotated
 
-from pydantic import MISSING, BaseModel, ConfigDict, Field
+from pydantic import MISSING, Field
 
 from app.schemas.options import asked
+from app.schemas.strict_body import StrictBody
 
 # Lists stop at their first fault: millions of faults in one body would fill the memory.
 Numbers = Annotated[list[float], Field(fail_fast=True)]
@@ -16,12 +17,6 @@ Vector = Annotated[
     Numbers, Field(description="three numbers", json_schema_extra={"minItems": 3, "maxItems": 3})
 ]
 Quaternion = Annotated[Numbers, Field(json_schema_extra={"minItems": 4, "maxItems": 4})]
-
-
-class StrictBody(BaseModel):
-    """Nothing unknown, nothing converted, nothing that is not finite."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 
 class TargetBody(StrictBody):

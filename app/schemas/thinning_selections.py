@@ -8,7 +8,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from app.schemas.requests import StrictBody, Vector
+from app.schemas.requests import Vector
+from app.schemas.strict_body import StrictBody
 
 
 class BlossomBody(StrictBody):

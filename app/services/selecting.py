@@ -14,7 +14,7 @@ def selection_to_json(body: bytes) -> bytes:
         ProblemError: 422, the request makes no sense; no fault repeats what was sent.
     """
     with told_as_problem():
-        request = ThinningSelectionRequest.model_validate_json(body)
+        request = ThinningSelectionRequest.from_json(body)
         selection = select_blossoms(
             [
                 BlossomBranch(

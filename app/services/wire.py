@@ -40,8 +40,9 @@ def parse_request(body: bytes) -> PlanRequest:
 
     Raises:
         pydantic.ValidationError: not JSON, or not the schema's structure.
+        InvalidProblem: an object has a name twice.
     """
-    return PlanRequest.model_validate_json(body)
+    return PlanRequest.from_json(body)
 
 
 def parse_stored_request(body: bytes) -> StoredPlanRequest:

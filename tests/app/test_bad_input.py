@@ -156,6 +156,41 @@ def test_duplicate_ids(server: Server, request_body: Body) -> None:
     assert MARKER not in answer.text
 
 
+TWICE = {
+    "#/robot": ('"robot":', '"robot": "tabletop", "robot":'),
+    "#/targets/0/position_m": ('"position_m":', '"position_m": [0.1, 0.1, 0.1], "position_m":'),
+    "#/options/method": ('"method":', '"method": "ncos", "method":'),
+    # The one inside is in an object that does not count.
+    "#/options": ('"options":', '"options": {"norm": "l1", "norm": "l2"}, "options":'),
+}
+
+
+@pytest.mark.parametrize("pointer", TWICE)
+def test_a_name_that_stands_twice(pointer: str, server: Server, request_body: Body) -> None:
+    text = json.dumps(request_body).replace(*TWICE[pointer], 1)
+    assert text.count('"') > json.dumps(request_body).count('"')
+    (error,) = assert_problem(post(server, text.encode()), 422, pointer)["errors"]
+    assert "twice" in error["detail"]
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "name"),
+    [
+        ("/v1/executions", '{"plan_id": "1", "plan_id": "2", "robot": "tabletop"}', "plan_id"),
+        ("/v1/comparisons", '{"scenario": "data-set-3", "scenario": "strawberry"}', "scenario"),
+        ("/v1/robots/tabletop/lease", '{"holder": "a", "holder": "b"}', "holder"),
+        ("/v1/thinning-selections", '{"branches": [], "branches": []}', "branches"),
+        ("/v1/frames/twice/registration", '{"pairs": [], "pairs": []}', "pairs"),
+    ],
+)
+def test_a_name_that_stands_twice_elsewhere(
+    path: str, body: str, name: str, server: Server
+) -> None:
+    headers = {"Content-Type": "application/json"}
+    answer = server.client.post(path, content=body.encode(), headers=headers)
+    assert_problem(answer, 422, f"#/{name}")
+
+
 @pytest.mark.parametrize("field", ["robot", "targets"])
 def test_missing_field(field: str, server: Server, request_body: Body) -> None:
     del request_body[field]
