@@ -25,6 +25,7 @@ ANNOUNCEMENT = "Prunus listens on "
 BODY_LIMIT_BYTES = 8_000_000  # of the session's server
 START_S = 60
 READY_S = 600  # the first start compiles every kernel
+JOB_S = 600  # jobs take what is left of the processors, which beside other tests is little
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,11 @@ from app.services.job_process import JobProcess
 from app.services.jobs import JobService
 from app.services.solver_process import SolverLost
 from app.store import JobStore, open_engine
-from tests.app.conftest import Server, assert_problem, running_server, wait_until
+from tests.app.conftest import JOB_S, Server, assert_problem, running_server, wait_until
 from tests.solver.problems import random_targets
 
 Body = dict[str, Any]
 ASYNC = {"Prefer": "respond-async"}
-END_S = 120
 CLOCKS = ("id", "elapsed_s", "solver")
 
 
@@ -72,7 +71,7 @@ def job_of(server: Server, job_id: str) -> Body:
 
 
 def ended(server: Server, job_id: str) -> Body:
-    wait_until(lambda: "ended_at" in job_of(server, job_id), END_S)
+    wait_until(lambda: "ended_at" in job_of(server, job_id), JOB_S)
     return job_of(server, job_id)
 
 
@@ -129,14 +128,14 @@ def test_large_batches_become_jobs_and_larger_ones_are_refused(jobs: Server) -> 
 def test_results_and_events_come_while_it_runs(jobs: Server) -> None:
     job = begun(jobs, batch(2000, "ncos"))
     path = f"/v1/jobs/{job['id']}"
-    wait_until(lambda: job_of(jobs, job["id"])["done"] > 0, END_S)
+    wait_until(lambda: job_of(jobs, job["id"])["done"] > 0, JOB_S)
     so_far = jobs.client.get(f"{path}/results").json()["approaches"]
     assert 0 < len(so_far) < 2000
     events: list[tuple[str, Body]] = []
 
     def follow() -> None:
         with (
-            httpx2.Client(base_url=jobs.url, timeout=END_S, trust_env=False) as client,
+            httpx2.Client(base_url=jobs.url, timeout=JOB_S, trust_env=False) as client,
             client.stream("GET", f"{path}/events") as answer,
         ):
             assert answer.headers["content-type"].startswith("text/event-stream")
@@ -157,7 +156,7 @@ def test_results_and_events_come_while_it_runs(jobs: Server) -> None:
                 canceled = httpx2.delete(f"{jobs.url}{path}", trust_env=False)
                 assert canceled.status_code == 202
                 assert canceled.json()["status"] == "canceled"
-    follower.join(END_S)
+    follower.join(JOB_S)
     job = job_of(jobs, job["id"])
     assert seen == job["done"] < 2000
     assert [name for name, _ in events] == ["progress"] * (len(events) - 1) + ["ended"]
@@ -172,7 +171,7 @@ def test_results_and_events_come_while_it_runs(jobs: Server) -> None:
 def test_a_batch_that_is_choosing_is_canceled_and_the_next_one_runs(jobs: Server) -> None:
     slow = begun(jobs, batch(2000, "ssas", "optimal"))
     waiting = begun(jobs, batch(2000, "ssas", "optimal"))
-    wait_until(lambda: job_of(jobs, slow["id"])["status"] == "running", END_S)
+    wait_until(lambda: job_of(jobs, slow["id"])["status"] == "running", JOB_S)
     assert jobs.client.delete(f"/v1/jobs/{waiting['id']}").json()["status"] == "canceled"
     assert jobs.client.delete(f"/v1/jobs/{slow['id']}").json()["status"] == "canceled"
     after = ended(jobs, begun(jobs, batch(20, "ssas"))["id"])
@@ -214,16 +213,16 @@ def job_processes(server: Server) -> set[int]:
 
 def test_a_job_process_that_dies_is_started_again(jobs: Server) -> None:
     job = begun(jobs, batch(1500, "ncos"))
-    wait_until(lambda: job_of(jobs, job["id"])["done"] > 0, END_S)
+    wait_until(lambda: job_of(jobs, job["id"])["done"] > 0, JOB_S)
     # As when memory runs out: whatever comes is killed, for a while.
     gone: set[int] = set()
     for _ in range(3):
-        wait_until(lambda: bool(job_processes(jobs) - gone), END_S)
+        wait_until(lambda: bool(job_processes(jobs) - gone), JOB_S)
         for worker in job_processes(jobs) - gone:
             os.kill(worker, signal.SIGKILL)
             gone.add(worker)
     done = job_of(jobs, job["id"])["done"]
-    wait_until(lambda: job_of(jobs, job["id"])["done"] > done, END_S)
+    wait_until(lambda: job_of(jobs, job["id"])["done"] > done, JOB_S)
     assert jobs.client.delete(f"/v1/jobs/{job['id']}").json()["status"] == "canceled"
 
 
@@ -233,7 +232,7 @@ def test_a_job_goes_on_behind_its_last_part(tmp_path: Path, kind: signal.Signals
     with log.open("w") as stderr:
         with running_server(tmp_path / "data", stderr=stderr) as server:
             job = begun(server, batch(200, "ncos"))
-            wait_until(lambda: job_of(server, job["id"])["done"] >= 50, END_S)
+            wait_until(lambda: job_of(server, job["id"])["done"] >= 50, JOB_S)
             # Whoever reads along must not take what comes until then for all.
             path, following = f"/v1/jobs/{job['id']}/results", {"Accept": "application/x-ndjson"}
             with server.client.stream("GET", path, headers=following) as answer:

@@ -22,7 +22,14 @@ from app.store import ExecutionStore, PlanStore, open_engine
 from app.store import postgresql as postgresql_connections
 from app.store.failures import StoreFailure, failure_of
 from bench.service.postgresql import PostgresqlServer
-from tests.app.conftest import REPOSITORY, Server, assert_problem, running_server, wait_until
+from tests.app.conftest import (
+    JOB_S,
+    REPOSITORY,
+    Server,
+    assert_problem,
+    running_server,
+    wait_until,
+)
 
 Body = dict[str, Any]
 ID = "0" * 32
@@ -109,7 +116,7 @@ def test_a_full_disk(on_sqlite: Server, request_body: Body) -> None:
         return told
 
     # It waited for the room, and lost nothing.
-    wait_until(lambda: status() == "completed", 60)
+    wait_until(lambda: status() == "completed", JOB_S)
     done = server.client.get(job.headers["location"].replace("jobs", "plans")).json()
     assert [entry["target_id"] for entry in done["approaches"]] == [f"{k}" for k in range(400)]
 

@@ -9,12 +9,11 @@ import pytest
 
 from app.services.job_parts import PART_TARGETS
 from app.settings import Settings
-from tests.app.conftest import running_server, wait_until
+from tests.app.conftest import JOB_S, running_server, wait_until
 from tests.docs.test_documents import ROOT, fences
 
 DOCUMENT = "docs/jobs.md"
 ADDRESS = "http://127.0.0.1:8000"
-END_S = 120
 
 
 def test_its_command_begins_a_job(tmp_path: Path) -> None:
@@ -30,7 +29,7 @@ def test_its_command_begins_a_job(tmp_path: Path) -> None:
         assert location is not None
         path = location[1]
         assert path.endswith(json.loads(body)["id"])
-        wait_until(lambda: server.client.get(path).json()["status"] == "completed", END_S)
+        wait_until(lambda: server.client.get(path).json()["status"] == "completed", JOB_S)
         plan = server.client.get(path.replace("jobs", "plans")).json()
         assert plan["summary"]["planned"] == 5
 
