@@ -1,6 +1,7 @@
 """What every request body has in common, and how one is read."""
 
 import json
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any, Self
 
@@ -39,8 +40,8 @@ def repeated_names(document: bytes) -> list[tuple[str | int, ...]]:
     def remember(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) < len(pairs):
-            names = [name for name, _ in pairs]
-            repeated[id(found)] = found, [name for name in found if names.count(name) > 1]
+            counts = Counter(name for name, _ in pairs)
+            repeated[id(found)] = found, [name for name in found if counts[name] > 1]
         return found
 
     # As a float, a number may have as many digits as it likes.

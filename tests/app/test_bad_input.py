@@ -173,6 +173,15 @@ def test_a_name_that_stands_twice(pointer: str, server: Server, request_body: Bo
     assert "twice" in error["detail"]
 
 
+def test_what_does_not_count_may_have_any_names(server: Server, request_body: Body) -> None:
+    """No schema bounds how many: comparing each with each would take minutes."""
+    many = ",".join(f'"{k}":0' for k in range(80_000))
+    lost = f'"options": {{{many},"0":0}}, "options":'
+    text = json.dumps(request_body).replace('"options":', lost, 1)
+    (error,) = assert_problem(post(server, text.encode()), 422, "#/options")["errors"]
+    assert "twice" in error["detail"]
+
+
 @pytest.mark.parametrize(
     ("path", "body", "name"),
     [
