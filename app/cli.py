@@ -187,7 +187,7 @@ def worker(
     from app.version import prunus_version
     from hardware.exceptions import HardwareError
     from hardware.options import read_token
-    from hardware.worker_program import WorkerOptions, run_worker
+    from hardware.worker.program import WorkerOptions, run_worker
     from solver.exceptions import SolverError
 
     try:
@@ -228,7 +228,7 @@ def calibrate(
     """
     import math
 
-    from hardware.calibrating import calibrate_arm
+    from hardware.arm.calibrating import calibrate_arm
     from hardware.exceptions import HardwareError
     from solver.exceptions import SolverError
 

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from hardware.instances import load_instance
+from hardware.servos.instances import load_instance
 from solver.robots.model import PRISMATIC
 
 HEADINGS: Final = (

@@ -22,7 +22,7 @@ from app.store import TokenStore, open_engine
 from app.store.failures import cause_of
 from app.store.single_service import DatabaseInUse, Hold, hold_database
 from app.traffic import DRAIN_POLL_S, Traffic
-from hardware.instances import instance_names, load_instance
+from hardware.servos.instances import instance_names, load_instance
 from solver import InvalidRobot
 
 logger = logging.getLogger(__name__)

@@ -11,7 +11,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from app.services.execution_record import LINK_LOST, SERVICE_RESTARTED, STATUSES, WORKER_LOST
 from app.services.executions import ExecutionService
 from app.services.links import NOT_A_MESSAGE, SILENT, Link, LinkRefused, LinkService
-from hardware.messages import (
+from hardware.link.messages import (
     SILENCE_S,
     ExecutionAccount,
     FromWorker,
@@ -45,7 +45,7 @@ class _End:
 
 @router.websocket("/v1/robots/{name}/link")
 async def robot_link(websocket: WebSocket, name: str) -> None:
-    """One worker a robot. The first message is its hello; see `hardware.messages`."""
+    """One worker a robot. The first message is its hello; see `hardware.link.messages`."""
     links: LinkService = websocket.app.state.links
     executions: ExecutionService = websocket.app.state.executions
     await websocket.accept()

@@ -14,7 +14,7 @@ from app.services.executions import ExecutionService
 from app.services.leases import LeaseService
 from app.services.links import ANSWER_S, Link, LinkService
 from app.services.wire import present
-from hardware.messages import Acknowledge, AcknowledgeReport, Stop, StopReport
+from hardware.link.messages import Acknowledge, AcknowledgeReport, Stop, StopReport
 
 router = APIRouter(prefix="/v1/robots/{name}", tags=["robots"])
 

@@ -15,7 +15,7 @@ from app.schemas.robots import (
 )
 from app.services.execution_checks import robot_instance
 from app.services.links import LinkService
-from hardware.instances import RobotInstance, instance_names, load_instance
+from hardware.servos.instances import RobotInstance, instance_names, load_instance
 from solver.robots.model import REVOLUTE, Joint
 
 router = APIRouter(prefix="/v1/robots", tags=["robots"])

@@ -12,8 +12,8 @@ from app.services.links import Link
 from app.services.plan_reading import whole_answer
 from app.services.store_calls import store_call
 from app.store import PlanStore
-from hardware.instances import RobotInstance, load_instance
-from hardware.messages import TargetAccount
+from hardware.link.messages import TargetAccount
+from hardware.servos.instances import RobotInstance, load_instance
 from solver import Fault, UnknownRobot
 from solver.solution import PLANNED
 

@@ -7,7 +7,7 @@ from typing import Any, Final
 import orjson
 
 from app.services.wire import present
-from hardware.messages import (
+from hardware.link.messages import (
     CANCELED,
     COMPLETED,
     ENDED,

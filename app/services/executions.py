@@ -43,7 +43,7 @@ from app.services.solving import SolvingService
 from app.services.store_calls import store_call
 from app.store import ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
 from hardware.clock import timestamp
-from hardware.messages import (
+from hardware.link.messages import (
     CANCELED,
     ENDED,
     EXECUTING,

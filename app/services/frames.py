@@ -15,7 +15,7 @@ from app.services.sent_frames import BASE_FRAME
 from app.services.wire import present
 from app.store import FramesFull, FrameStore, NewKey, StoredFrame
 from hardware.clock import instant_text
-from hardware.instances import instance_names, load_instance
+from hardware.servos.instances import instance_names, load_instance
 from solver import Fault, Robot, UnknownRobot
 from solver.frames import (
     FrameWarning,

@@ -9,8 +9,7 @@ from typing import Final
 from starlette.concurrency import run_in_threadpool
 
 from app.services.outbox import Outbox
-from hardware.instances import RobotInstance, load_instance
-from hardware.messages import (
+from hardware.link.messages import (
     Acknowledge,
     AcknowledgeReport,
     Hello,
@@ -18,6 +17,7 @@ from hardware.messages import (
     StopReport,
     Telemetry,
 )
+from hardware.servos.instances import RobotInstance, load_instance
 from solver import UnknownRobot
 
 ANSWER_S: Final = 3.0

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from app.services.execution_record import PLAN_OUTDATED
 from app.services.wire import parse_stored_request, problem_from_wire
 from hardware.clock import timestamp
-from hardware.messages import Failure, SegmentTimes, TargetMotion, encode
+from hardware.link.messages import Failure, SegmentTimes, TargetMotion, encode
 from solver import Approach, InvalidProblem, Problem
 from solver.exceptions import RetimingFailed
 from solver.retiming import ChosenApproach, retime

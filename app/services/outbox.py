@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Final
 
-from hardware.messages import HEARTBEAT_S, FromService, Heartbeat, encode
+from hardware.link.messages import HEARTBEAT_S, FromService, Heartbeat, encode
 
 ORDER_BYTES_PER_S: Final = 4 * 1024 * 1024
 """Orders are sent no faster than a worker reads them. Otherwise megabytes of motion would lie in

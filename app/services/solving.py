@@ -29,7 +29,7 @@ from app.services.selecting import selection_to_json
 from app.services.solver_pool import SolverPool
 from app.services.solver_process import SolverLost
 from app.services.wire import plan_to_wire
-from hardware.messages import Failure
+from hardware.link.messages import Failure
 from solver import Problem, solve
 from solver.frames import RigidTransform
 from solver.many_targets import plans_together

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from app.schemas.requests import PlanRequest, StoredPlanRequest
 from app.services.sent_frames import FindFrame, pose_to_wire, sent_frame
 from app.version import prunus_version
-from hardware.instances import load_instance
+from hardware.servos.instances import load_instance
 from solver import (
     Approach,
     Arc,

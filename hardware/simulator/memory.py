@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from hardware.control_tables import Register, ServoModel
-from hardware.protocol import ERROR_ANGLE_LIMIT, ERROR_RANGE
+from hardware.bus.protocol import ERROR_ANGLE_LIMIT, ERROR_RANGE
+from hardware.servos.control_tables import Register, ServoModel
 
 WRITABLE_WHEN_LOCKED: Final = range(24, 36)
 

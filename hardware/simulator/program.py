@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hardware.clock import RobotClock
-from hardware.instances import load_instance
-from hardware.joints import load_arm
 from hardware.options import BadOption, check_time_factor, joints_from_degrees
+from hardware.servos.instances import load_instance
+from hardware.servos.joints import load_arm
 from hardware.simulator.bus import simulated_arm
 from hardware.simulator.faults import FAULTS, apply_fault
 from hardware.simulator.pseudo_terminal import serve_bus

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from hardware.control_tables import SIMULATED_FIRMWARE, ServoModel
-from hardware.protocol import (
+from hardware.bus.protocol import (
     ACTION,
     ERROR_CHECKSUM,
     ERROR_INSTRUCTION,
@@ -22,8 +21,9 @@ from hardware.protocol import (
     InstructionPacket,
     status_packet,
 )
+from hardware.servos.control_tables import SIMULATED_FIRMWARE, ServoModel
+from hardware.servos.units import SIGN_BIT, SPEED_UNIT_RAD_S, speed_rad_s, ticks_per_radian
 from hardware.simulator.memory import ControlTable
-from hardware.units import SIGN_BIT, SPEED_UNIT_RAD_S, speed_rad_s, ticks_per_radian
 
 Clock = Callable[[], float]
 """Says the time [s]; only differences count."""

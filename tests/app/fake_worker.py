@@ -10,8 +10,7 @@ from typing import Any, TypeVar
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from hardware.instances import load_instance
-from hardware.messages import (
+from hardware.link.messages import (
     Execute,
     ExecutionAccount,
     FromService,
@@ -26,6 +25,7 @@ from hardware.messages import (
     decode_from_service,
     encode,
 )
+from hardware.servos.instances import load_instance
 from tests.app.conftest import Server, wait_until
 
 WAIT_S = 30

@@ -19,7 +19,7 @@ from app.access_guard import REVOKED
 from app.services.tokens import new_token
 from app.settings import Settings
 from app.store import TokenStore, open_engine
-from hardware.messages import Welcome
+from hardware.link.messages import Welcome
 from tests.app.conftest import REPOSITORY, Server, assert_problem, running_server, wait_until
 from tests.app.execution_requests import (
     assert_code,

@@ -14,8 +14,8 @@ from app.schemas.options import TEXTS, known_values
 from app.services.wire import parse_request, problem_from_wire
 from app.settings import Settings
 from app.store import executions, jobs
-from hardware.end_effector import END_EFFECTORS
-from hardware.protocol import ERROR_NAMES
+from hardware.bus.protocol import ERROR_NAMES
+from hardware.end_effector.output import END_EFFECTORS
 from solver import InvalidProblem, Options, Problem
 from solver.comparison.run import MAXIMUM_REPEATS, MOST_REPEATS
 from solver.comparison.summary import FAILURE_CHARGE

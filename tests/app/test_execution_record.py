@@ -14,7 +14,7 @@ from app.services.execution_record import (
     targets_of_plan,
     with_account,
 )
-from hardware.messages import ExecutionAccount, Failure, TargetAccount
+from hardware.link.messages import ExecutionAccount, Failure, TargetAccount
 
 FAILURE = Failure("worker_lost", "it left", "t1")
 MEASURED = TargetAccount(

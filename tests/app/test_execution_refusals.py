@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from hardware.messages import Failure
+from hardware.link.messages import Failure
 from tests.app.conftest import Server, assert_problem
 from tests.app.execution_requests import assert_code, command, make_plan, post, tamper
 from tests.app.fake_worker import AT, IDLE, state, wait_for, worker

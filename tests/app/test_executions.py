@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from app.schemas.executions import ExecutionAnswer
-from hardware.messages import (
+from hardware.link.messages import (
     Cancel,
     Execute,
     ExecutionAccount,

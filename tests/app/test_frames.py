@@ -12,7 +12,7 @@ import pytest
 
 from app.services.motions import target_motions
 from app.services.wire import parse_request, problem_from_wire
-from hardware.messages import TargetMotion, decode_from_service
+from hardware.link.messages import TargetMotion, decode_from_service
 from solver import InvalidProblem
 from solver.frames import RigidTransform, transform_from_matrix
 from tests.app.conftest import EXAMPLE, Server, assert_problem

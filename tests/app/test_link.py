@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from hardware.messages import (
+from hardware.link.messages import (
     SILENCE_S,
     Cancel,
     ExecutionAccount,

@@ -10,7 +10,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from app.serving import LONGEST_MESSAGE_BYTES
-from hardware.messages import ExecutionAccount, Welcome
+from hardware.link.messages import ExecutionAccount, Welcome
 from tests.app.conftest import Server, running_server
 from tests.app.execution_requests import (
     executing,

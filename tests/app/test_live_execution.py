@@ -13,7 +13,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from hardware.dynamixel_bus import DynamixelBus
+from hardware.bus.dynamixel_bus import DynamixelBus
 from tests.app.conftest import (
     EXAMPLE,
     REPOSITORY,

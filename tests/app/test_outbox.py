@@ -3,7 +3,7 @@ from collections.abc import Coroutine
 from typing import Any
 
 from app.services.outbox import ORDER_BYTES_PER_S, Outbox
-from hardware.messages import HEARTBEAT_S, Cancel, Heartbeat, Stop, encode
+from hardware.link.messages import HEARTBEAT_S, Cancel, Heartbeat, Stop, encode
 
 HEARTBEAT = encode(Heartbeat())
 STOP = Stop("1")

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from app.schemas.executions import RobotStateAnswer
-from hardware.messages import (
+from hardware.link.messages import (
     Acknowledge,
     AcknowledgeReport,
     Cancel,

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from hardware.bus import ServoBus
-from hardware.dynamixel_bus import DynamixelBus
+from hardware.bus.bus import ServoBus
+from hardware.bus.dynamixel_bus import DynamixelBus
 from hardware.exceptions import PortUnavailable, ServoMissing
-from hardware.instances import load_instance
-from hardware.joints import ArmMap, load_arm
+from hardware.servos.instances import load_instance
+from hardware.servos.joints import ArmMap, load_arm
 from tests.conftest import SERVO_PORT
 
 REPOSITORY = Path(__file__).parents[2]

@@ -4,14 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 
-from hardware.arm import ServoArm
-from hardware.bus import StatusReply
-from hardware.clock import RobotClock
-from hardware.exceptions import BusLost, CorruptPackets, ServoMissing
-from hardware.instances import load_instance
-from hardware.joints import MIRRORED, ArmMap, load_arm
-from hardware.messages import Execute, SegmentTimes, TargetMotion
-from hardware.protocol import (
+from hardware.arm.servo_arm import ServoArm
+from hardware.bus.bus import StatusReply
+from hardware.bus.protocol import (
     BROADCAST_ID,
     READ,
     SYNC_WRITE,
@@ -20,6 +15,11 @@ from hardware.protocol import (
     error_names,
     instruction_packet,
 )
+from hardware.clock import RobotClock
+from hardware.exceptions import BusLost, CorruptPackets, ServoMissing
+from hardware.link.messages import Execute, SegmentTimes, TargetMotion
+from hardware.servos.instances import load_instance
+from hardware.servos.joints import MIRRORED, ArmMap, load_arm
 from hardware.simulator.bus import SimulatedBus, simulated_arm
 from hardware.simulator.faults import apply_fault
 from solver import Options, Plan, Problem, Robot, Target, solve
@@ -48,7 +48,7 @@ class FakeTime:
 
 @dataclass
 class InProcessBus:
-    """A `hardware.bus.ServoBus` that hands its packets to a simulated bus at once.
+    """A `hardware.bus.bus.ServoBus` that hands its packets to a simulated bus at once.
 
     Attributes:
         sent: every instruction packet, as bytes.

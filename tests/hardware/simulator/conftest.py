@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import pytest
 
-from hardware.control_tables import servo_model
-from hardware.joints import ArmMap, load_arm
-from hardware.protocol import (
+from hardware.bus.protocol import (
     HEADER,
     READ,
     WRITE,
     checksum,
     instruction_packet,
 )
+from hardware.servos.control_tables import servo_model
+from hardware.servos.joints import ArmMap, load_arm
 from hardware.simulator import SimulatedBus, SimulatedServo, simulated_arm
 from solver import Robot
 

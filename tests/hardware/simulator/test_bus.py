@@ -4,9 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hardware.bus.protocol import BROADCAST_ID, PING, SYNC_WRITE, WRITE, instruction_packet
 from hardware.exceptions import InvalidArm, OutsideLimits
-from hardware.joints import SYNC_CABLE, ArmMap
-from hardware.protocol import BROADCAST_ID, PING, SYNC_WRITE, WRITE, instruction_packet
+from hardware.servos.joints import SYNC_CABLE, ArmMap
 from hardware.simulator import simulated_arm
 from solver import Robot
 from tests.hardware.simulator.conftest import Answer, Client, HandClock, MakeClient

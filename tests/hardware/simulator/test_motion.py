@@ -3,9 +3,9 @@ from collections import Counter
 
 import pytest
 
-from hardware.control_tables import servo_model, servo_models
+from hardware.servos.control_tables import servo_model, servo_models
+from hardware.servos.units import signed_value, speed_rad_s, ticks_per_radian
 from hardware.simulator import SimulatedBus, SimulatedServo
-from hardware.units import signed_value, speed_rad_s, ticks_per_radian
 from tests.hardware.simulator.conftest import Client, HandClock, MakeClient
 
 models = pytest.mark.parametrize("model", sorted(servo_models()))

@@ -14,8 +14,8 @@ from dynamixel_sdk import COMM_SUCCESS
 from typer.testing import CliRunner
 
 from app.cli import cli
-from hardware.control_tables import SIMULATED_FIRMWARE
-from hardware.joints import load_arm
+from hardware.servos.control_tables import SIMULATED_FIRMWARE
+from hardware.servos.joints import load_arm
 from solver import Robot
 from tests.hardware.simulator.program import (
     COMMAND,

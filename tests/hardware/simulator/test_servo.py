@@ -2,8 +2,7 @@
 
 import pytest
 
-from hardware.control_tables import SIMULATED_FIRMWARE, servo_models
-from hardware.protocol import (
+from hardware.bus.protocol import (
     ACTION,
     BROADCAST_ID,
     BULK_READ,
@@ -20,6 +19,7 @@ from hardware.protocol import (
     WRITE,
     instruction_packet,
 )
+from hardware.servos.control_tables import SIMULATED_FIRMWARE, servo_models
 from tests.hardware.simulator.conftest import Answer, Client, MakeClient
 
 models = pytest.mark.parametrize("model", sorted(servo_models()))

@@ -1,0 +1,1 @@
+"""The end-effector: what switches it, and the process that owns its output."""

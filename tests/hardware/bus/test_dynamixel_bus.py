@@ -1,0 +1,129 @@
+"""Troubles on the line, through the SDK; what goes well is in tests/contracts/test_bus.py."""
+
+import contextlib
+import os
+import subprocess
+import threading
+import time
+import tty
+from collections.abc import Iterator
+
+import pytest
+
+from hardware.bus.dynamixel_bus import DynamixelBus
+from hardware.exceptions import BusLost, CorruptPackets, PortUnavailable, ServoMissing
+from tests.contracts.test_bus import servo_bus
+
+
+class Line:
+    """A bus on the simulated bus's program, and that program's standard input."""
+
+    def __init__(self, device: str, process: "subprocess.Popen[str]") -> None:
+        self.bus = DynamixelBus(device)
+        self.process = process
+
+    def fault(self, *commands: str) -> None:
+        """Have faults, and wait until the program has read them."""
+        assert self.process.stdin is not None
+        self.process.stdin.write("".join(f"{command}\n" for command in commands))
+        self.process.stdin.flush()
+        time.sleep(0.2)
+
+
+@pytest.fixture
+def line() -> Iterator[Line]:
+    with servo_bus() as (device, process):
+        it = Line(device, process)
+        yield it
+        it.bus.close()
+
+
+def test_single_corrupt_packets_are_repeated_and_counted(line: Line) -> None:
+    line.fault("corrupt-next 2")
+    assert line.bus.read(41, 0, 2).data == bytes((64, 0))
+    assert line.bus.retries == {41: 2}
+
+
+def test_a_tenth_of_corrupt_packets_is_survived(line: Line) -> None:
+    line.fault("corrupt 0.1")
+    answers = [line.bus.read(41, 0, 2).data for _ in range(60)]
+    assert set(answers) == {bytes((64, 0))}
+    assert line.bus.retries[41] > 0
+
+
+def test_corrupt_packets_without_end_are_named(line: Line) -> None:
+    line.fault("corrupt 1")
+    with pytest.raises(CorruptPackets) as caught:
+        line.bus.read(31, 36, 2)
+    assert caught.value.servo_id == 31
+    line.fault("heal")
+    assert line.bus.read(31, 0, 2).errors == ()
+
+
+def test_a_missing_servo_does_not_disturb_the_others(line: Line) -> None:
+    line.fault("missing 41")
+    with pytest.raises(ServoMissing):
+        line.bus.read(41, 36, 2)
+    assert line.bus.read(51, 0, 2).errors == ()
+
+
+def test_all_error_bits_of_an_answer_are_named(line: Line) -> None:
+    line.fault("overload 31", "overheat 31")
+    assert set(line.bus.read(31, 36, 2).errors) == {"overload", "overheating"}
+
+
+def test_an_unplugged_device_is_a_lost_bus_and_not_a_busy_port(line: Line) -> None:
+    line.fault("unplug")
+    for _ in range(2):
+        with pytest.raises(BusLost):
+            line.bus.read(31, 36, 2)
+    with pytest.raises(BusLost):
+        line.bus.sync_write(25, {31: b"\x00"})
+    with pytest.raises(PortUnavailable):
+        line.bus.reopen()
+
+
+def test_a_device_that_is_not_there_is_named() -> None:
+    with pytest.raises(PortUnavailable) as caught:
+        DynamixelBus("/dev/no-such-device")
+    assert "/dev/no-such-device" in caught.value.detail
+    assert "No such file" in caught.value.detail
+
+
+def test_something_else_than_a_serial_device_is_named() -> None:
+    with pytest.raises(PortUnavailable) as caught:
+        DynamixelBus("/dev/null")
+    assert "Inappropriate ioctl" in caught.value.detail
+
+
+@pytest.mark.parametrize("babble", [b"\xff", b"\xff\xff\x0b\xff", b"\x00\xff\xff\xfe"])
+def test_a_babbling_line_is_corrupt_and_does_not_hold_anybody_up(babble: bytes) -> None:
+    port, client = os.openpty()
+    tty.setraw(client)
+    os.set_blocking(port, False)
+    over = threading.Event()
+
+    def talk() -> None:
+        while not over.is_set():
+            with contextlib.suppress(BlockingIOError):
+                os.write(port, babble * 64)
+            with contextlib.suppress(BlockingIOError):
+                os.read(port, 4096)
+
+    talking = threading.Thread(target=talk)
+    bus = DynamixelBus(os.ttyname(client))
+    talking.start()
+    try:
+        with pytest.raises((CorruptPackets, ServoMissing)):
+            bus.read(11, 36, 2)
+    finally:
+        over.set()
+        talking.join()
+        bus.close()
+        os.close(port)
+        os.close(client)
+
+
+def test_a_rate_that_the_sdk_does_not_know_is_named(line: Line) -> None:
+    with pytest.raises(PortUnavailable, match="57142"):
+        DynamixelBus(line.bus.device, baud_rate=57142)
