@@ -26,8 +26,8 @@ setup: $(VENV)/dev.stamp         ## the environment alone
 pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
 	$(BIN)/prunus demo --output build/pictures
 	cp build/pictures/arm.png build/pictures/effort.png build/pictures/table.md docs/pictures/
-	$(BIN)/python -m app.pictures.weights docs/pictures/weights.png
-	$(BIN)/python -m app.pictures.strawberry docs/pictures/strawberry.png
+	$(BIN)/python -m app.reports.drawings.weights docs/pictures/weights.png
+	$(BIN)/python -m app.reports.drawings.strawberry docs/pictures/strawberry.png
 	$(BIN)/python scripts/update_readme.py
 
 reports: $(VENV)/run.stamp       ## the example reports in docs/reports, measured anew on a quiet machine

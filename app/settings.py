@@ -17,8 +17,8 @@ from pydantic_settings import (
 from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
-from app.browser_guard import is_loopback
-from app.logs import LogOptions
+from app.guards.browser import is_loopback
+from app.observation.logs import LogOptions
 
 DATABASES: Final = ("sqlite", "postgresql", "postgres")
 # As browsers write it: lower case, and no path.
@@ -37,7 +37,7 @@ class Settings(BaseSettings):
         job_targets_limit: larger batches are refused.
         job_workers: processes that solve jobs, at a lower priority.
         most_waiting_jobs: so many jobs may wait or run.
-        log_format: see `app.logs`.
+        log_format: see `app.observation.logs`.
         log_level: what is below is not logged.
         grace_s: requests being answered get this long when the service stops.
         head_timeout_s: for a request's head.

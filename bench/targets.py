@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.demo_request import demo_request
+from app.schemas.demo_request import demo_request
 from solver import Options, Problem, Target, load_robot
 from solver.approach.batch import NO_BRANCH, closed_form_optima
 from solver.approach.frame import approach_frames

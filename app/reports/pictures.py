@@ -8,10 +8,10 @@ from typing import Final
 
 from matplotlib.figure import Figure
 
-from app.pictures.contest_effort import MOST_PANELS, can_draw_effort, draw_contest_effort
-from app.pictures.contest_poses import MOST_POSTURES, draw_contest_poses
-from app.pictures.contest_strawberry import draw_strawberry
-from app.pictures.contest_times import draw_times
+from app.reports.drawings.contest_effort import MOST_PANELS, can_draw_effort, draw_contest_effort
+from app.reports.drawings.contest_poses import MOST_POSTURES, draw_contest_poses
+from app.reports.drawings.contest_strawberry import draw_strawberry
+from app.reports.drawings.contest_times import draw_times
 from app.reports.picture import EFFORT, POSES, TIMES, Picture
 from solver.comparison.contest import Contest
 from solver.comparison.result import Comparison

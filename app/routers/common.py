@@ -7,7 +7,7 @@ from fastapi import Request
 from app.errors import ProblemError
 from app.schemas.examples import EXAMPLES
 from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
-from app.services.leases import LEASE_HEADER
+from app.services.robots.leases import LEASE_HEADER
 
 # Python's own phrases for these change from version to version.
 DESCRIPTIONS = {

@@ -13,7 +13,7 @@ from app.schemas.comparisons import (
     ScenarioAnswer,
     ScenariosAnswer,
 )
-from app.services.comparisons import ComparisonService, location_of
+from app.services.comparisons.service import ComparisonService, location_of
 from app.store import NewKey
 from solver.comparison.registry import SCENARIOS
 

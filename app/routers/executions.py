@@ -10,8 +10,8 @@ from app.schemas.executions import (
     ExecutionsAnswer,
     ExecutionSummary,
 )
-from app.services.execution_record import Execution, execution_to_json
-from app.services.executions import ExecutionService
+from app.services.robots.execution_record import Execution, execution_to_json
+from app.services.robots.executions import ExecutionService
 from app.services.store_calls import store_call
 from app.store import ExecutionRow, ExecutionStore, NewKey
 from hardware.clock import instant_text

@@ -4,12 +4,12 @@ from fastapi import APIRouter, Request
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.errors import ProblemError
+from app.guards.traffic import RETRY_S, Traffic
 from app.routers.common import problem_answers
 from app.schemas.answers import HealthAnswer
-from app.services.solving import SolvingService
+from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
 from app.store import PlanStore
-from app.traffic import RETRY_S, Traffic
 
 router = APIRouter(tags=["health"])
 

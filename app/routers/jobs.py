@@ -12,11 +12,11 @@ from starlette.types import Send
 
 from app.routers.common import NDJSON, problem_answers, wants_lines
 from app.schemas.jobs import JobAnswer, JobResultsAnswer, JobsAnswer
-from app.services.jobs import JobService
-from app.services.parts import joined_arrays
-from app.services.plan_reading import lines_of
+from app.services.jobs.service import JobService
+from app.services.plans.parts import joined_arrays
+from app.services.plans.plan_reading import lines_of
+from app.services.plans.wire import present
 from app.services.store_calls import store_call
-from app.services.wire import present
 from app.store import JobRow, PlanStore
 from hardware.clock import instant_text
 

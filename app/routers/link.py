@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.services.execution_record import LINK_LOST, SERVICE_RESTARTED, STATUSES, WORKER_LOST
-from app.services.executions import ExecutionService
-from app.services.links import NOT_A_MESSAGE, SILENT, Link, LinkRefused, LinkService
+from app.services.robots.execution_record import LINK_LOST, SERVICE_RESTARTED, STATUSES, WORKER_LOST
+from app.services.robots.executions import ExecutionService
+from app.services.robots.links import NOT_A_MESSAGE, SILENT, Link, LinkRefused, LinkService
 from hardware.link.messages import (
     SILENCE_S,
     ExecutionAccount,

@@ -3,9 +3,9 @@
 from fastapi import APIRouter, Request, Response
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.metrics import MEDIA_TYPE, Metrics
+from app.observation.metrics import MEDIA_TYPE, Metrics
 from app.routers.common import problem_answers
-from app.services.links import LinkService
+from app.services.robots.links import LinkService
 from app.services.store_calls import store_call
 from app.store.counts import stored_counts
 from app.store.failures import StoreBusy

@@ -14,17 +14,17 @@ from app.routers.jobs import job_json
 from app.schemas.answers import PlanAnswer
 from app.schemas.jobs import JobAnswer
 from app.schemas.requests import PlanRequest
-from app.services.batch_reading import (
+from app.services.jobs.service import JobService
+from app.services.plans.batch_reading import (
     LARGE_BODY_BYTES,
     BatchLimits,
     JobOrder,
     PlanOrder,
     read_batch,
 )
-from app.services.frames import FrameService
-from app.services.jobs import JobService
-from app.services.plan_reading import plan_chunks, plan_lines
-from app.services.solving import SolvingService
+from app.services.plans.frames import FrameService
+from app.services.plans.plan_reading import plan_chunks, plan_lines
+from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
 from app.settings import Settings
 from app.store import NewKey, PlanStore, new_entry

@@ -9,11 +9,11 @@ from starlette.concurrency import run_in_threadpool
 from app.errors import ProblemError
 from app.routers.common import lease_of, problem_answers
 from app.schemas.executions import AcknowledgeAnswer, RobotStateAnswer, StopAnswer
-from app.services.execution_checks import no_worker, robot_instance
-from app.services.executions import ExecutionService
-from app.services.leases import LeaseService
-from app.services.links import ANSWER_S, Link, LinkService
-from app.services.wire import present
+from app.services.plans.wire import present
+from app.services.robots.execution_checks import no_worker, robot_instance
+from app.services.robots.executions import ExecutionService
+from app.services.robots.leases import LeaseService
+from app.services.robots.links import ANSWER_S, Link, LinkService
 from hardware.link.messages import Acknowledge, AcknowledgeReport, Stop, StopReport
 
 router = APIRouter(prefix="/v1/robots/{name}", tags=["robots"])

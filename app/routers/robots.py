@@ -13,8 +13,8 @@ from app.schemas.robots import (
     RobotSummary,
     ToolAnswer,
 )
-from app.services.execution_checks import robot_instance
-from app.services.links import LinkService
+from app.services.robots.execution_checks import robot_instance
+from app.services.robots.links import LinkService
 from hardware.servos.instances import RobotInstance, instance_names, load_instance
 from solver.robots.model import REVOLUTE, Joint
 

@@ -5,9 +5,9 @@ from starlette.concurrency import run_in_threadpool
 
 from app.routers.common import body_of, json_body, problem_answers
 from app.schemas.thinning_selections import ThinningSelectionAnswer, ThinningSelectionRequest
-from app.services.batch_reading import LARGE_BODY_BYTES
-from app.services.selecting import selection_to_json
-from app.services.solving import SolvingService
+from app.services.plans.batch_reading import LARGE_BODY_BYTES
+from app.services.plans.selecting import selection_to_json
+from app.services.solving.service import SolvingService
 
 router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"])
 

@@ -1,4 +1,4 @@
-"""Answers of plans, for the OpenAPI document; `app.services.wire` makes the answers themselves.
+"""Answers of plans, for the OpenAPI document; `app.services.plans.wire` makes the answers.
 
 Clients must expect new fields and new values of every status, code and name.
 """

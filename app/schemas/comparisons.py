@@ -1,4 +1,4 @@
-"""Bodies of comparisons and scenarios; `app.services.comparisons` makes the answers.
+"""Bodies of comparisons and scenarios; `app.services.comparisons.service` makes the answers.
 
 Clients must expect new fields and new values of every status and name.
 """

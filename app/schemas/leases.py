@@ -3,7 +3,7 @@
 from pydantic import MISSING, BaseModel, Field
 
 from app.schemas.strict_body import StrictBody
-from app.services.leases import LEAST_LEASE_S, LONGEST_HOLDER, MOST_LEASE_S, USUAL_LEASE_S
+from app.services.robots.leases import LEAST_LEASE_S, LONGEST_HOLDER, MOST_LEASE_S, USUAL_LEASE_S
 
 
 class LeaseRequest(StrictBody):

@@ -10,8 +10,8 @@ from typing import Any, Final
 import httpx2
 import orjson
 
-from app.demo_request import demo_request
 from app.routers.idempotency_key import HEADER, REPLAYED
+from app.schemas.demo_request import demo_request
 
 ROBOT: Final = "tabletop-sim"
 ACTIVE: Final = ("queued", "executing", "paused")

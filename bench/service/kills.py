@@ -23,7 +23,7 @@ from typing import Any
 
 from sqlalchemy import Engine, create_engine, inspect
 
-from app.processes import own_process
+from app.server.processes import own_process
 from app.settings import Settings
 from bench.measure import Row, row
 from bench.registry import KILLS

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 import orjson
 
-from app.long_lived import keep_for_good
+from app.services.solving.long_lived import keep_for_good
 from bench.measure import Row, failed, row
 from bench.registry import SERVICE
 from bench.results import FOLDER, write_and_print

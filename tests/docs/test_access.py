@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 import typer.main
 
-from app.cli import cli
-from app.scopes import SCOPES
+from app.commands.cli import cli
+from app.services.access.scopes import SCOPES
 from tests.app.conftest import running_server
 from tests.docs.test_documents import ROOT, fences, rows
 

@@ -9,7 +9,7 @@ import pytest
 import typer.main
 from pydantic import TypeAdapter
 
-from app.cli import cli
+from app.commands.cli import cli
 from app.reports.folder import OWN_FILES
 from app.reports.tables import ROW_COLUMNS
 from app.schemas.comparison_results import ComparisonResultAnswer

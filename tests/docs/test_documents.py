@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from app.access_guard import REVOKED
-from app.demo import MOST_ERROR_M
-from app.demo_request import demo_request
-from app.plan_table import HEADINGS, MEASURED_HEADINGS, plan_rows
+from app.commands.demo import MOST_ERROR_M
+from app.commands.plan_table import HEADINGS, MEASURED_HEADINGS, plan_rows
+from app.guards.access import REVOKED
 from app.routers.link import SERVICE_FAULT
-from app.services import links
-from app.services.execution_record import EXECUTION_ERROR_CODES
-from app.services.selecting import selection_to_json
-from app.services.wire import parse_request, plan_to_wire, problem_from_wire
+from app.schemas.demo_request import demo_request
+from app.services.plans.selecting import selection_to_json
+from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
+from app.services.robots import links
+from app.services.robots.execution_record import EXECUTION_ERROR_CODES
 from app.settings import Settings
 from bench.page import PAGE, PICTURE_FOLDER, page
 from bench.pictures import PICTURES

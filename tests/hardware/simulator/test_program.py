@@ -13,7 +13,7 @@ import pytest
 from dynamixel_sdk import COMM_SUCCESS
 from typer.testing import CliRunner
 
-from app.cli import cli
+from app.commands.cli import cli
 from hardware.servos.control_tables import SIMULATED_FIRMWARE
 from hardware.servos.joints import load_arm
 from solver import Robot

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from app.demo_request import demo_request
+from app.schemas.demo_request import demo_request
 from solver.comparison.approach_contest import Answer
 from solver.comparison.contest import Contest
 from solver.comparison.scenarios.data_sets import (

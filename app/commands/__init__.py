@@ -1,0 +1,1 @@
+"""What people type: prunus and its subcommands, a file each."""

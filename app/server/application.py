@@ -1,0 +1,236 @@
+"""The application: routes, errors, limits, and what lives as long as it does."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any, Final
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic.json_schema import models_json_schema
+from sqlalchemy import event
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware.cors import CORSMiddleware
+
+from app.errors import install_error_handlers
+from app.guards.access import AccessGuardMiddleware
+from app.guards.body_limit import BodyLimitMiddleware
+from app.guards.body_timeout import BodyTimeoutMiddleware
+from app.guards.browser import BrowserGuardMiddleware
+from app.guards.cors import CORS_RULES
+from app.guards.request_log import RequestLogMiddleware
+from app.guards.traffic import StoppingMiddleware, Traffic
+from app.observation.metrics import Metrics
+from app.routers import (
+    comparisons,
+    documentation,
+    executions,
+    frames,
+    health,
+    jobs,
+    leases,
+    link,
+    metrics,
+    plans,
+    robot_state,
+    robots,
+    thinning_selections,
+)
+from app.routers.common import problem_answers
+from app.schemas.comparisons import ComparisonRequest
+from app.schemas.executions import ExecutionRequest
+from app.schemas.frames import FrameRegistrationRequest, FrameRequest
+from app.schemas.leases import LeaseRenewal, LeaseRequest
+from app.schemas.problem_details import ProblemDetails
+from app.schemas.requests import PlanRequest
+from app.schemas.thinning_selections import ThinningSelectionRequest
+from app.server.access_document import describe_access
+from app.services.access.scopes import check_rows
+from app.services.access.service import AccessService
+from app.services.comparisons.service import ComparisonService
+from app.services.idempotency import IdempotencyService
+from app.services.jobs.service import JobService
+from app.services.plans.frames import FrameService
+from app.services.robots.executions import ExecutionService
+from app.services.robots.leases import LeaseService
+from app.services.robots.links import LinkService
+from app.services.solving.service import SolvingService
+from app.settings import Settings
+from app.store import (
+    ComparisonStore,
+    ExecutionStore,
+    FrameStore,
+    IdempotencyStore,
+    JobStore,
+    PlanStore,
+    TokenStore,
+    open_engine,
+)
+from app.version import prunus_version
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """The application; it touches nothing outside before it is started."""
+    app = FastAPI(
+        title="Prunus",
+        version=prunus_version(),
+        description="Decides how a robot arm reaches for blossoms in a tree. "
+        "Metres, radians and seconds in the robot's base frame throughout.",
+        lifespan=_lifespan,
+        # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
+        docs_url=None,
+        # A client that does not follow redirects would take one for an answer to its batch.
+        redirect_slashes=False,
+        redoc_url=None,
+    )
+    app.state.settings = settings
+    app.state.metrics = Metrics(prunus_version())
+    app.state.traffic = Traffic()
+    app.state.stopping = app.state.traffic.stopping
+    # What is added last is outermost.
+    app.add_middleware(StoppingMiddleware, traffic=app.state.traffic)
+    app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
+    app.add_middleware(
+        BodyTimeoutMiddleware,
+        idle_s=settings.body_idle_timeout_s,
+        total_s=settings.body_timeout_s,
+    )
+    app.add_middleware(
+        AccessGuardMiddleware,
+        token_required=settings.token_required,
+        rate_per_s=settings.rate_limit_per_s,
+        burst=settings.rate_burst,
+        most_requests=settings.most_requests,
+    )
+    if settings.cors_origins:
+        # In front of what checks tokens: a browser asks beforehand without one.
+        app.add_middleware(CORSMiddleware, allow_origins=settings.cors_origins, **CORS_RULES)
+    app.add_middleware(
+        BrowserGuardMiddleware,
+        host=settings.host,
+        any_name=settings.token_required,
+        origins=settings.cors_origins,
+    )
+    app.add_middleware(RequestLogMiddleware, metrics=app.state.metrics, traffic=app.state.traffic)
+    install_error_handlers(app)
+    for module in (
+        plans,
+        jobs,
+        executions,
+        comparisons,
+        frames,
+        thinning_selections,
+        robots,
+        robot_state,
+        leases,
+        link,
+        health,
+        metrics,
+        documentation,
+    ):
+        app.include_router(module.router)
+    check_rows(app.routes)
+    documentation.mount_files(app)
+    # FastAPI's documented way to extend the document is to replace this method.
+    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    settings: Settings = app.state.settings
+    state = app.state
+    engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
+    state.store = PlanStore(engine)
+    state.execution_store = ExecutionStore(engine)
+    state.frames = FrameService(FrameStore(engine))
+    state.idempotency = IdempotencyService(IdempotencyStore(engine))
+    state.links = LinkService()
+    state.engine = engine
+    event.listen(engine, "handle_error", lambda _: state.metrics.store_failed())
+    state.access = AccessService(TokenStore(engine))
+    state.leases = LeaseService()
+    state.solving = SolvingService(
+        settings.workers,
+        settings.most_waiting_plans,
+        state.metrics,
+        settings.log_options,
+    )
+    state.jobs = JobService(
+        JobStore(engine),
+        workers=settings.job_workers,
+        most_waiting=settings.most_waiting_jobs,
+        logs=settings.log_options,
+        measures=state.metrics,
+        stopping=state.stopping,
+    )
+    state.executions = ExecutionService(
+        state.execution_store, state.store, state.solving, state.links, state.leases
+    )
+    state.comparisons = ComparisonService(ComparisonStore(engine), state.solving)
+    try:
+        await state.executions.end_interrupted()
+        await state.comparisons.end_interrupted()
+        await state.jobs.start()
+        yield
+    finally:
+        await state.executions.close()
+        await state.comparisons.close()
+        await state.jobs.close()
+        await state.solving.close()
+        await run_in_threadpool(engine.dispose)
+
+
+def _openapi(app: FastAPI) -> dict[str, Any]:
+    document = get_openapi(
+        title=app.title, version=app.version, description=app.description, routes=app.routes
+    )
+    # Bodies are parsed by hand, for strictness and for the problem form; so they are added here.
+    for model, mode in (
+        (PlanRequest, "validation"),
+        (ExecutionRequest, "validation"),
+        (ComparisonRequest, "validation"),
+        (ThinningSelectionRequest, "validation"),
+        (FrameRequest, "validation"),
+        (FrameRegistrationRequest, "validation"),
+        (LeaseRequest, "validation"),
+        (LeaseRenewal, "validation"),
+        (ProblemDetails, "serialization"),
+    ):
+        _, definitions = models_json_schema(
+            [(model, mode)],  # type: ignore[list-item]
+            ref_template="#/components/schemas/{model}",
+        )
+        document["components"]["schemas"].update(definitions["$defs"])
+    refused = problem_answers(403)  # by the guard in front of every route
+    failed = problem_answers(503, 507)  # by the database, behind almost all
+    for route, path in document["paths"].items():
+        for operation in path.values():
+            if route.startswith("/v1/"):
+                missing = failed.keys() - {int(code) for code in operation["responses"]}
+                operation["responses"] |= {str(code): failed[code] for code in sorted(missing)}
+            # FastAPI's own form of a validation error, which is never sent.
+            _drop_stock_validation_error(operation["responses"])
+            for parameter in operation.get("parameters", ()):
+                if parameter["name"] in PATH_PARAMETERS:
+                    parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
+            operation["responses"] |= {str(code): what for code, what in refused.items()}
+    describe_access(document)
+    for name in ("HTTPValidationError", "ValidationError"):
+        document["components"]["schemas"].pop(name, None)
+    return document
+
+
+PATH_PARAMETERS: Final = {
+    "plan_id": "the plan's id, as Location or the plan has it",
+    "job_id": "the job's id, as Location or the job has it",
+    "execution_id": "the execution's id, as Location or the execution has it",
+    "comparison_id": "the comparison's id, as Location or the comparison has it",
+    "lease_id": "the lease's id, which only its holder knows",
+    "name": "the robot's name, one of GET /v1/robots",
+}
+
+
+def _drop_stock_validation_error(responses: dict[str, Any]) -> None:
+    content = responses.get("422", {}).get("content", {})
+    if "application/json" in content:
+        del responses["422"]

@@ -1,0 +1,1 @@
+"""Whose token it is, what it allows, and how tokens look."""

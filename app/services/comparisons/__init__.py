@@ -1,0 +1,1 @@
+"""Comparisons: taken on, run one after the other in a solver process, kept."""

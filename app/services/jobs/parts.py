@@ -1,0 +1,105 @@
+"""A job's work in a process of its own: everything but a few numbers stays there, or is bytes."""
+
+import json
+import logging
+from dataclasses import dataclass
+from typing import Any
+
+import orjson
+
+from app.observation.measures import PlanFigures
+from app.services.plans import parts
+from app.services.plans.wire import parse_stored_request, plan_to_wire, problem_from_wire
+from app.store.jobs import NewPart
+from solver import Plan, Problem
+from solver.kinematics.families import has_closed_form
+from solver.staged import (
+    Choice,
+    choice_from_json,
+    choice_to_json,
+    choose,
+    next_reference,
+)
+
+logger = logging.getLogger(__name__)
+
+# A part takes well below a second: that long a job may go on after a stop of the service, and so
+# much is lost when its process is killed.
+PART_TARGETS = {"ssas": 250, "as": 100, "fixed_z": 100, "floating_z": 100, "ncos": 50}
+PART_TARGETS_SLOW = 10
+
+
+@dataclass
+class _Loaded:
+    """The job that this process works on."""
+
+    job_id: str
+    problem: Problem
+    choice: Choice | None
+
+
+# Set by `load_job`; each process works on one job at a time.
+_loaded: _Loaded | None = None
+
+
+def load_job(job_id: str, request: str, choice: str | None) -> None:
+    """Make a job ready, with what its batch decided as one if it has."""
+    global _loaded
+    problem = problem_from_wire(parse_stored_request(request.encode()))
+    known = None if choice is None else choice_from_json(problem, choice)
+    _loaded = _Loaded(job_id, problem, known)
+
+
+def choose_for_job(job_id: str) -> str:
+    """What the job's batch decides as one, as text."""
+    loaded = _job(job_id)
+    logger.info("job choosing", extra={"job_id": job_id})
+    loaded.choice = choose(loaded.problem)
+    return choice_to_json(loaded.choice)
+
+
+def solve_part(
+    job_id: str, number: int, first: int, reference: str | None
+) -> tuple[NewPart, PlanFigures]:
+    """The part of a job that begins at a place of its order, from a posture, JSON."""
+    loaded = _job(job_id)
+    problem, choice = loaded.problem, loaded.choice
+    assert choice is not None, "parts come after the choice"
+    logger.info("job part started", extra={"job_id": job_id, "part": number})
+    began = tuple(json.loads(reference)) if reference is not None else problem.start
+    plan, solved = parts.solve_part(problem, choice, first, part_targets(problem), began)
+    part = NewPart(
+        number=number,
+        first=first,
+        planned=plan.planned,
+        infeasible=plan.infeasible,
+        total_effort=plan.total_effort,
+        elapsed_s=plan.elapsed_s,
+        reference=json.dumps(next_reference(problem, plan.approaches, began)),
+        approaches=solved.approaches.decode(),
+    )
+    return part, solved.figures
+
+
+def part_targets(problem: Problem) -> int:
+    """How many targets a part has."""
+    quick = has_closed_form(problem.robot, problem.mounted_tool) and not problem.options.certify
+    return PART_TARGETS[problem.options.method] if quick else PART_TARGETS_SLOW
+
+
+def plan_head(job_id: str, totals: parts.Totals) -> str:
+    """The answer of a job's plan without its approaches, JSON."""
+    return parts.head_of(_job(job_id).problem, job_id, totals).decode()
+
+
+def resolved_request(request: str, problem: Problem) -> str:
+    """A stored request with every default filled in, JSON: the same for ever after."""
+    head = plan_to_wire(Plan(problem, (), 0.0), "")
+    resolved: dict[str, Any] = {name: head[name] for name in ("tool", "start_joints", "options")}
+    return orjson.dumps({**orjson.loads(request), **resolved}).decode()
+
+
+def _job(job_id: str) -> _Loaded:
+    if _loaded is None or _loaded.job_id != job_id:
+        raise RuntimeError("this process works on another job")
+    return _loaded

@@ -1,0 +1,1 @@
+"""Solver processes: one, the pool, what the service has them do."""
