@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from app.schemas.demo_request import demo_request
 from solver import Options, Problem, Target, load_robot
-from solver.approach.batch import NO_BRANCH, closed_form_optima
-from solver.approach.frame import approach_frames
+from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.task.frame import approach_frames
 from solver.comparison.targets import drawn_at_edges, drawn_in_box
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@
 Metres, radians and seconds in the robot's base frame throughout.
 """
 
-from solver.approach.arcs import Arc
-from solver.approach.batch import feasible_arcs
+from solver.approach.arcs.arcs import Arc
+from solver.approach.optimum.batch import feasible_arcs
 from solver.exceptions import (
     Fault,
     InvalidProblem,
@@ -20,14 +20,9 @@ from solver.exceptions import (
     UnknownRobot,
     UnsupportedKinematics,
 )
-from solver.planner import solve
-from solver.problem import Options, Problem, Target
-from solver.residual import Residual, Verification
-from solver.robots.model import Joint, Link, Robot, Tool, load_robot, parse_robot, robot_names
-from solver.robots.toml_writing import robot_to_toml
-from solver.robots.urdf_reading import robot_from_urdf
-from solver.robots.urdf_writing import robot_to_urdf
-from solver.solution import (
+from solver.planner.solve import solve
+from solver.problem.problem import Options, Problem, Target
+from solver.problem.solution import (
     Approach,
     Nearest,
     Plan,
@@ -37,14 +32,19 @@ from solver.solution import (
     Trajectory,
     Transfer,
 )
-from solver.thinning import (
+from solver.problem.thinning import (
     Blossom,
     BlossomBranch,
     PlacedBlossom,
     ThinningSelection,
     select_blossoms,
 )
-from solver.verification import verify, verify_plan
+from solver.robots.model import Joint, Link, Robot, Tool, load_robot, parse_robot, robot_names
+from solver.robots.toml_writing import robot_to_toml
+from solver.urdf.reading import robot_from_urdf
+from solver.urdf.writing import robot_to_urdf
+from solver.verification.residual import Residual, Verification
+from solver.verification.verify import verify, verify_plan
 
 __all__ = [
     "Approach",

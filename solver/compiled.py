@@ -19,14 +19,17 @@ import llvmlite.binding as llvm
 import numba
 from numba.core import config
 
-_KERNEL_FOLDERS = ("kinematics", "approach", "sequencing")
+_MARK = "from solver.compiled import"
 
 
 def kernel_sources() -> tuple[Path, ...]:
     """The files that compiled code depends on: kernels, and the constants compiled into them."""
-    here = Path(__file__).parent
-    folders = (file for folder in _KERNEL_FOLDERS for file in (here / folder).glob("*.py"))
-    return (Path(__file__), here / "tolerances.py", *sorted(folders))
+    return tuple(
+        file
+        for file in sorted(Path(__file__).parent.rglob("*.py"))
+        if file.name in ("compiled.py", "tolerances.py")
+        or _MARK in file.read_text(encoding="utf-8")
+    )
 
 
 def cache_folder() -> Path:

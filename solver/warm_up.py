@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from typing import Final
 
-from solver.problem import Target
+from solver.problem.problem import Target
 from solver.robots.model import Robot
 
 
@@ -22,7 +22,7 @@ def warm_up() -> None:
 def methods() -> None:
     """One small problem by every method for each robot."""
     from solver import Options, Problem, load_robot, robot_names, solve
-    from solver.registry import METHODS
+    from solver.methods.registry import METHODS
 
     for name in robot_names():
         robot = load_robot(name)
@@ -63,8 +63,8 @@ def orders() -> None:
 def other_arms() -> None:
     """No robot that ships needs the numerical inverse; one brought by somebody may."""
     from solver import Problem, load_robot
-    from solver.approach.numerical import numerical_warm_start
-    from solver.approach.task import approach_task
+    from solver.approach.numerical.warm_start import numerical_warm_start
+    from solver.approach.task.task import approach_task
 
     robot = load_robot("tabletop")
     problem = Problem(robot, [home_target(robot)])

@@ -1,6 +1,6 @@
 """Bodies of frames: poses, pairs of points, and what they say of each other.
 
-Structure and types only: what a value may be, `solver.frames` and `solver.registration` decide.
+Structure and types only: what a value may be, `solver.frames` decides.
 Clients must expect new fields and new values of every code and name.
 """
 

@@ -60,7 +60,13 @@ def _late(
 
 
 def _asked(name: str) -> dict[str, Any]:
-    from solver.problem import FULL_ANSWER, FULL_ANSWER_TARGETS, MOST_WEIGHT, RANGES, Options
+    from solver.problem.problem import (
+        FULL_ANSWER,
+        FULL_ANSWER_TARGETS,
+        MOST_WEIGHT,
+        RANGES,
+        Options,
+    )
 
     text = TEXTS[name]
     if name == "joint_weights":
@@ -94,10 +100,10 @@ def _answered(name: str) -> dict[str, Any]:
 
 def known_values() -> Mapping[str, Sequence[str]]:
     """What the solver knows today, by the options that take names."""
-    from solver.nlp.backends import BACKENDS
-    from solver.nlp.quadratic import QP_SOLVERS
-    from solver.problem import INCLUDES, NORMS, ORDERS, WEIGHTS
-    from solver.registry import METHODS
+    from solver.methods.nlp.backends import BACKENDS
+    from solver.methods.nlp.quadratic import QP_SOLVERS
+    from solver.methods.registry import METHODS
+    from solver.problem.problem import INCLUDES, NORMS, ORDERS, WEIGHTS
 
     return {
         "method": tuple(METHODS),

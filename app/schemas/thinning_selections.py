@@ -1,7 +1,7 @@
 """Bodies of thinning selections: blossoms along branches, and which of them go.
 
-Structure and types only: what a value may be, `solver.thinning` decides. Clients must expect new
-fields in answers.
+Structure and types only: what a value may be, `solver.problem.thinning` decides. Clients must
+expect new fields in answers.
 """
 
 from typing import Annotated

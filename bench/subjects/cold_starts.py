@@ -5,7 +5,7 @@ import numpy as np
 from bench.measure import Row, row
 from bench.subjects.ncos import plan_each
 from bench.targets import reachable_set
-from solver.approach.task import approach_task
+from solver.approach.task.task import approach_task
 
 AS_CHEAP = 1e-3
 STARTS = (1, 8)
@@ -13,7 +13,7 @@ STARTS = (1, 8)
 
 def measure(quick: bool) -> list[Row]:
     """Share solved and milliseconds a target, by backend and number of starts."""
-    from solver.nlp.cold_start import cold_solve
+    from solver.comparison.cold_start import cold_solve
 
     targets = reachable_set(8, 3 if quick else 100)
     warm, warm_times = plan_each(targets, method="ncos")

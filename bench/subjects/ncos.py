@@ -7,9 +7,9 @@ from typing import Any
 from bench.measure import Row, row
 from bench.targets import TargetSet, reachable_set
 from solver import solve
-from solver.approach.task import approach_task
-from solver.registry import METHODS
-from solver.solution import Approach, Reason
+from solver.approach.task.task import approach_task
+from solver.methods.registry import METHODS
+from solver.problem.solution import Approach, Reason
 
 WANTED_GAP = 1e-6
 WANTED_MS = {"sqp": 2.0, "ipopt": 10.0}

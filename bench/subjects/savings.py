@@ -8,7 +8,7 @@ from bench.measure import Row, failed, row
 from bench.subjects.given import planned_effort
 from bench.targets import TargetSet, data_set_3, reachable_set
 from solver import solve
-from solver.approach.batch import closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
 
 
 def measure(quick: bool) -> list[Row]:

@@ -38,8 +38,8 @@ from hardware.tolerances import (
 )
 from hardware.worker.order import Order, Segment, TargetOrder
 from solver.kinematics.forward import forward_kinematics
+from solver.motion.timing import time_joint_line
 from solver.robots.model import Array, Robot, Tool
-from solver.trajectory.timing import time_joint_line
 
 
 class Execution:

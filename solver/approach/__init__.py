@@ -1,1 +1,1 @@
-"""The approach about the branch: its frame, its feasibility and its feasible arcs."""
+"""One approach about the branch, from its task to the optimum or the reason there is none."""

@@ -6,23 +6,23 @@ from typing import Any, Final
 
 import numpy as np
 
-from solver.approach.task import ApproachTask, approach_task
+from solver.approach.cut_in.cut_in import build_cut_in, line_deviation, retreat_rows
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask, approach_task
+from solver.comparison.cold_start import solve_cold
 from solver.comparison.contest import Account, Contest, Entrant, Published
-from solver.cut_in import build_cut_in, line_deviation, retreat_rows
-from solver.effort import posture_effort
 from solver.exceptions import UnknownEntrant
 from solver.kinematics.families import has_closed_form
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.any_arm import Solve
-from solver.methods.candidate import Candidate
-from solver.nlp.cold_start import solve_cold
-from solver.one_target import solve_between_rows_too
-from solver.problem import Problem
-from solver.proposal import propose
-from solver.registry import METHODS
+from solver.methods.registry import METHODS
+from solver.planner.one_target import solve_between_rows_too
+from solver.planner.proposal import propose
+from solver.problem.effort import posture_effort
+from solver.problem.problem import Problem
+from solver.problem.solution import Reason, SolverReport
 from solver.robots.model import Array
-from solver.solution import Reason, SolverReport
-from solver.verification import refusal, verify
+from solver.verification.verify import refusal, verify
 
 INDEX_NAME: Final = "effort [rad]"
 COLD_STARTS: Final = 8

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from solver.exceptions import UnknownEntrant
-from solver.problem import Problem
+from solver.problem.problem import Problem
 
 
 @dataclass(frozen=True)

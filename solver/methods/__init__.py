@@ -1,1 +1,1 @@
-"""The methods: one file each, one row each in `solver.registry`."""
+"""The methods: one file each, one row each in `solver.methods.registry`."""

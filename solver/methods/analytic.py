@@ -4,13 +4,13 @@ The analogue of S, remarks 1 and 2, which take the middle of the feasible interv
 coordinate: not the cheapest approach but the one that may err most in its angle.
 """
 
-from solver.approach.arcs import task_arcs
-from solver.approach.frame import signed_angle
-from solver.approach.task import ApproachTask
-from solver.diagnosis import diagnose
-from solver.effort import posture_effort
-from solver.methods.candidate import Candidate
-from solver.solution import Reason
+from solver.approach.arcs.arcs import task_arcs
+from solver.approach.refusal.diagnosis import diagnose
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import ApproachTask
+from solver.problem.effort import posture_effort
+from solver.problem.solution import Reason
 
 
 def solve_as(task: ApproachTask) -> Candidate | Reason:

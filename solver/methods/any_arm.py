@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
-from solver.approach.rail import at_rail, rail_effort, rail_positions
-from solver.approach.task import ApproachTask
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask
 from solver.kinematics.families import Rail, has_closed_form, rail_of
-from solver.methods.candidate import Candidate
-from solver.solution import Reason
+from solver.methods.rail import at_rail, rail_effort, rail_positions
+from solver.problem.solution import Reason
 
 Solve = Callable[[ApproachTask], Candidate | Reason]
 

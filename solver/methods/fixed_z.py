@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.approach.arcs import sample_angles_of
-from solver.approach.frame import signed_angle
-from solver.approach.robustness import bears_uncertainty
-from solver.approach.task import ApproachTask
-from solver.diagnosis import diagnose
+from solver.approach.arcs.arcs import sample_angles_of
+from solver.approach.refusal.diagnosis import diagnose
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.robustness import bears_uncertainty
 from solver.kinematics.spherical_wrist import BRANCHES
-from solver.methods.candidate import Candidate
+from solver.problem.solution import Reason
 from solver.robots.model import Array
-from solver.solution import Reason
 from solver.tolerances import AXIS_ERROR_RAD
 
 _FORWARD = np.array([1.0, 0.0, 0.0])

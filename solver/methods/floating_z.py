@@ -1,12 +1,12 @@
 """`floating_z`: T 3.4.2. Evenly spaced approach angles, all branches, the least effort wins."""
 
-from solver.approach.arcs import sample_angles, sample_angles_of
-from solver.approach.frame import signed_angle
-from solver.approach.robustness import bears_uncertainty
-from solver.approach.task import ApproachTask
-from solver.diagnosis import diagnose
-from solver.methods.candidate import Candidate
-from solver.solution import Reason
+from solver.approach.arcs.arcs import sample_angles, sample_angles_of
+from solver.approach.refusal.diagnosis import diagnose
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.robustness import bears_uncertainty
+from solver.problem.solution import Reason
 
 
 def solve_floating_z(task: ApproachTask, phase_rad: float = 0.0) -> Candidate | Reason:

@@ -1,6 +1,6 @@
 """`ncos`: the task definition as a nonlinear programme in CasADi, warm-started by the closed form.
 
-Source: S 3.3 for the idea; the programme is in `solver.nlp.formulation`.
+Source: S 3.3 for the idea; the programme is in `solver.methods.nlp.formulation`.
 """
 
 from collections.abc import Sequence
@@ -8,25 +8,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.approach.frame import signed_angle
-from solver.approach.relaxation import placement
-from solver.approach.task import ApproachTask
-from solver.cut_in import retreat_rows
-from solver.diagnosis import diagnose
-from solver.effort import posture_effort
+from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.refusal.diagnosis import diagnose
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.relaxation import placement
+from solver.approach.task.task import ApproachTask
 from solver.kinematics.families import has_closed_form, rail_of
 from solver.kinematics.forward import forward_kinematics
-from solver.methods.candidate import Candidate
+from solver.methods.nlp.backends import solve_instance
+from solver.methods.nlp.formulation import build_programme
+from solver.methods.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
+from solver.methods.nlp.relaxed import solve_relaxed
+from solver.methods.nlp.starts import corners, nearest_starts, start_at
 from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
 from solver.methods.semi_analytic import ArcOptimum, best_on_arcs
-from solver.nlp.backends import solve_instance
-from solver.nlp.formulation import build_programme
-from solver.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
-from solver.nlp.relaxed import solve_relaxed
-from solver.nlp.starts import corners, nearest_starts, start_at
+from solver.problem.effort import posture_effort
+from solver.problem.solution import Reason
 from solver.robots.model import Array
-from solver.solution import Reason
 from solver.tolerances import RELAXED_NEAREST, RELAXED_STARTS
 
 SOLVED = "solved"

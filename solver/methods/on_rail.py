@@ -4,17 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.approach.rail import at_rail, rail_effort
-from solver.approach.task import ApproachTask
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask
 from solver.kinematics.families import Rail
 from solver.methods.any_arm import over_rail
-from solver.methods.candidate import Candidate
+from solver.methods.nlp.backends import solve_instance
+from solver.methods.nlp.formulation import build_programme
+from solver.methods.nlp.instance import ProgrammeResult, make_instance, shape_of
+from solver.methods.nlp.starts import start_at
+from solver.methods.rail import at_rail, rail_effort
 from solver.methods.semi_analytic import solve_ssas
-from solver.nlp.backends import solve_instance
-from solver.nlp.formulation import build_programme
-from solver.nlp.instance import ProgrammeResult, make_instance, shape_of
-from solver.nlp.starts import start_at
-from solver.solution import Reason
+from solver.problem.solution import Reason
 
 
 def solve_on_rail(task: ApproachTask, rail: Rail) -> Candidate | Reason:

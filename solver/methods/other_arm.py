@@ -2,16 +2,20 @@
 
 import numpy as np
 
-from solver.approach.frame import signed_angle
-from solver.approach.numerical import NumericalStart, numerical_warm_start, polished_thinning
-from solver.approach.task import ApproachTask
-from solver.effort import posture_effort
-from solver.methods.candidate import Candidate
-from solver.nlp.backends import solve_instance
-from solver.nlp.formulation import build_programme
-from solver.nlp.instance import make_instance, shape_of
-from solver.nlp.starts import start_at
-from solver.solution import Reason
+from solver.approach.numerical.warm_start import (
+    NumericalStart,
+    numerical_warm_start,
+    polished_thinning,
+)
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import ApproachTask
+from solver.methods.nlp.backends import solve_instance
+from solver.methods.nlp.formulation import build_programme
+from solver.methods.nlp.instance import make_instance, shape_of
+from solver.methods.nlp.starts import start_at
+from solver.problem.effort import posture_effort
+from solver.problem.solution import Reason
 
 
 def solve_other_arm(task: ApproachTask) -> Candidate | Reason:

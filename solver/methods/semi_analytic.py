@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.approach.arcs import Arc, task_arcs
-from solver.approach.frame import signed_angle
-from solver.approach.search import optimum_on_arcs
-from solver.approach.task import ApproachTask
-from solver.diagnosis import diagnose
-from solver.methods.candidate import Candidate
-from solver.solution import Reason
+from solver.approach.arcs.arcs import Arc, task_arcs
+from solver.approach.optimum.search import optimum_on_arcs
+from solver.approach.refusal.diagnosis import diagnose
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import ApproachTask
+from solver.problem.solution import Reason
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.effort_samples import path_joints
-from solver.approach.packed import PackedTask
-from solver.approach.turns import (
+from solver.approach.arcs.turns import (
     TURN_ROWS,
     joints_of_turns,
     path_columns,
     turns_along_path,
     write_turns,
 )
+from solver.approach.optimum.effort_samples import path_joints
+from solver.approach.task.packed import PackedTask
 from solver.compiled import kernel
 from solver.robots.model import Array
 

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from solver.approach.task import ApproachTask
-from solver.cut_in import broken_limit
-from solver.methods.candidate import Candidate
+from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask
 from solver.methods.ncos import improved
 from solver.methods.semi_analytic import ArcOptimum
 from solver.sequencing.sequence import Stop

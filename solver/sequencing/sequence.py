@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.approach.arcs import Arc, task_arcs
-from solver.approach.batch import arcs_of_packed, chosen_paths, packed_problem
-from solver.approach.frame import signed_angle
-from solver.approach.task import ApproachTask, approach_task
-from solver.cut_in import broken_limit
-from solver.effort import posture_effort
-from solver.methods.candidate import Candidate
-from solver.problem import Problem
+from solver.approach.arcs.arcs import Arc, task_arcs
+from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.optimum.batch import arcs_of_packed, chosen_paths, packed_problem
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import ApproachTask, approach_task
+from solver.problem.effort import posture_effort
+from solver.problem.problem import Problem
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch, Indices
 from solver.sequencing.gather import gather

@@ -4,7 +4,7 @@ from bench.kernels import posture
 from bench.reference import build_ladder, ladder_effort, sweep_targets, sweep_task
 from bench.targets import data_set_3, random_set
 from solver import solve
-from solver.approach.batch import closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
 from solver.kinematics.forward import forward_kinematics
 
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from solver import Options, Problem, Robot, Target, solve
-from solver.approach.frame import signed_angle
-from solver.approach.task import approach_task
-from solver.methods.candidate import Candidate
-from solver.registry import METHODS
-from solver.solution import REASON_CODES, Reason
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import approach_task
+from solver.methods.registry import METHODS
+from solver.problem.solution import REASON_CODES, Reason
 from tests.solver.problems import random_targets
 
 

@@ -26,9 +26,9 @@ from bench.results import read
 from hardware import exceptions
 from solver import Options, solve
 from solver.comparison.registry import SCENARIOS
-from solver.problem import RANGES
-from solver.registry import METHODS
-from solver.solution import REASON_CODES
+from solver.methods.registry import METHODS
+from solver.problem.problem import RANGES
+from solver.problem.solution import REASON_CODES
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from app.store.frames import MOST_FRAMES
-from solver import point_pairs, registration
+from solver.frames import point_pairs, registration
 from tests.app.conftest import Server, running_server
 from tests.docs.test_documents import ROOT, fences, rows
 

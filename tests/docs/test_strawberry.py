@@ -6,21 +6,21 @@ from dataclasses import replace
 import pytest
 from scipy.optimize import brentq
 
-from solver.solution import Reason
-from solver.strawberry.analytic import solve_as
-from solver.strawberry.as_printed import (
+from solver.comparison.strawberry.analytic import solve_as
+from solver.comparison.strawberry.as_printed import (
     solve_as_printed,
     solve_as_printed_18,
     solve_ssas_printed,
     solve_ssas_printed_without_30,
 )
-from solver.strawberry.mechanism import Mechanism, Point
-from solver.strawberry.programme import solve_ncos
-from solver.strawberry.semi_analytic import solve_ssas
-from solver.strawberry.table_3 import MACHINE, PLANT_CENTRE_M, PLANT_RADIUS_M, table_3
-from solver.strawberry.verification import verify_answer
+from solver.comparison.strawberry.mechanism import Mechanism, Point
+from solver.comparison.strawberry.programme import solve_ncos
+from solver.comparison.strawberry.semi_analytic import solve_ssas
+from solver.comparison.strawberry.table_3 import MACHINE, PLANT_CENTRE_M, PLANT_RADIUS_M, table_3
+from solver.comparison.strawberry.verification import verify_answer
+from solver.problem.solution import Reason
 from tests.docs.test_documents import ROOT, rows
-from tests.solver.strawberry.places import MECHANISM, TARGETS, answered
+from tests.solver.comparison.strawberry.places import MECHANISM, TARGETS, answered
 
 DOCUMENT = "docs/strawberry.md"
 TEXT = " ".join((ROOT / DOCUMENT).read_text(encoding="utf-8").split())

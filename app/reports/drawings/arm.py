@@ -11,8 +11,8 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from app.reports.drawings.labels import plain_text
 from app.reports.drawings.references import planned_with_references
 from solver import Problem, Target
-from solver.approach.arcs import Arc, survey_target
-from solver.approach.frame import ApproachFrame, approach_frame
+from solver.approach.arcs.arcs import Arc, survey_target
+from solver.approach.task.frame import ApproachFrame, approach_frame
 from solver.kinematics.forward import link_transforms
 from solver.robots.model import Array
 

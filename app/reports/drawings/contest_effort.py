@@ -9,9 +9,9 @@ from app.reports.drawings.contest_style import method_style, shown_targets
 from app.reports.drawings.effort import angle_range, draw_curves
 from app.reports.drawings.labels import plain_text
 from solver import Problem, Target
-from solver.approach.arcs import survey_target
-from solver.approach.frame import approach_frame
-from solver.approach.relaxation import placement
+from solver.approach.arcs.arcs import survey_target
+from solver.approach.task.frame import approach_frame
+from solver.approach.task.relaxation import placement
 from solver.comparison.result import Comparison, Row
 from solver.kinematics.families import has_closed_form
 from solver.kinematics.forward import forward_kinematics

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from app.reports.drawings.strawberry import SHOWN, draw_poses
 from solver.comparison.result import Comparison
-from solver.strawberry.mechanism import Posture
-from solver.strawberry.table_3 import table_3
+from solver.comparison.strawberry.mechanism import Posture
+from solver.comparison.strawberry.table_3 import table_3
 
 MISSING: Final = "No target of this comparison has an answer."
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from app.reports.drawings.labels import plain_text
 from app.reports.drawings.references import planned_with_references
 from solver import Arc, Problem
-from solver.approach.arcs import Survey, survey_target
+from solver.approach.arcs.arcs import Survey, survey_target
 from solver.robots.model import Robot
 
 CHOSEN_COLOUR = "#e0457b"

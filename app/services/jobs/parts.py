@@ -13,7 +13,7 @@ from app.services.plans.wire import parse_stored_request, plan_to_wire, problem_
 from app.store.jobs import NewPart
 from solver import Plan, Problem
 from solver.kinematics.families import has_closed_form
-from solver.staged import (
+from solver.planner.staged import (
     Choice,
     choice_from_json,
     choice_to_json,

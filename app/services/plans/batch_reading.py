@@ -8,7 +8,7 @@ from app.services.jobs.parts import resolved_request
 from app.services.plans.sent_frames import stored_request
 from app.services.plans.wire import parse_request, problem_from_wire
 from solver import Fault, InvalidProblem, Problem
-from solver.frames import RigidTransform
+from solver.frames.transforms import RigidTransform
 
 LARGE_BODY_BYTES = 256 * 1024
 """Of two thousand targets or so. Parsing holds up all of its process, 1.4 s for 100,000 targets,

@@ -17,14 +17,14 @@ from app.store import FramesFull, FrameStore, NewKey, StoredFrame
 from hardware.clock import instant_text
 from hardware.servos.instances import instance_names, load_instance
 from solver import Fault, Robot, UnknownRobot
-from solver.frames import (
+from solver.frames.point_pairs import PointPair
+from solver.frames.registration import Agreement, check, register
+from solver.frames.transforms import (
     FrameWarning,
     RigidTransform,
     transform_from_matrix,
     transform_from_quaternion,
 )
-from solver.point_pairs import PointPair
-from solver.registration import Agreement, check, register
 
 # No dot first: clients and proxies take "." and ".." in a path for something else.
 NAME_PATTERN: Final = "[A-Za-z0-9_-][A-Za-z0-9_.-]{0,99}"

@@ -7,7 +7,7 @@ import orjson
 
 from app.schemas.requests import PlanRequest
 from solver import Fault, InvalidProblem, Problem
-from solver.frames import NamedFrame, RigidTransform
+from solver.frames.transforms import NamedFrame, RigidTransform
 
 BASE_FRAME = "base"
 

@@ -31,8 +31,8 @@ from solver import (
     Transfer,
     UnknownRobot,
 )
-from solver.frames import NamedFrame, targets_in_base
-from solver.strawberry.mechanism import NAME as STRAWBERRY
+from solver.comparison.strawberry.mechanism import NAME as STRAWBERRY
+from solver.frames.transforms import NamedFrame, targets_in_base
 
 
 def parse_request(body: bytes) -> PlanRequest:

@@ -15,7 +15,7 @@ from app.store import PlanStore
 from hardware.link.messages import TargetAccount
 from hardware.servos.instances import RobotInstance, load_instance
 from solver import Fault, UnknownRobot
-from solver.solution import PLANNED
+from solver.problem.solution import PLANNED
 
 FAULT: Final = "fault"
 

@@ -31,9 +31,9 @@ from app.services.solving.pool import SolverPool
 from app.services.solving.process import SolverLost
 from hardware.link.messages import Failure
 from solver import Problem, solve
-from solver.frames import RigidTransform
-from solver.many_targets import plans_together
-from solver.staged import choose
+from solver.frames.transforms import RigidTransform
+from solver.planner.many_targets import plans_together
+from solver.planner.staged import choose
 
 Result = TypeVar("Result")
 

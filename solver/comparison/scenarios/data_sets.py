@@ -17,9 +17,9 @@ from typing import Final
 
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest, Published
-from solver.problem import Problem, Target
+from solver.problem.problem import Problem, Target
+from solver.problem.thinning import Blossom, BlossomBranch, select_blossoms
 from solver.robots.model import load_robot
-from solver.thinning import Blossom, BlossomBranch, select_blossoms
 
 THESIS: Final = "F. Ouyang, thesis, University of Illinois at Urbana-Champaign, 2012"
 PUBLISHED_ON: Final = "MATLAB 7.11 (R2010b); the machine is not named (T 3.2.2)"

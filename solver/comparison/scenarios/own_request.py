@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest
-from solver.problem import Problem
+from solver.problem.problem import Problem
 
 
 def request_contest(problem: Problem, name: str, methods: Sequence[str] | None = None) -> Contest:

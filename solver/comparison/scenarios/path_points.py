@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from solver.approach.cut_in.cut_in import line_deviation
 from solver.comparison.approach_contest import (
     BETWEEN_ROWS,
     Answer,
@@ -16,10 +17,9 @@ from solver.comparison.approach_contest import (
 )
 from solver.comparison.contest import Account, Contest
 from solver.comparison.scenarios.data_sets import THESIS, data_set_3
-from solver.cut_in import line_deviation
 from solver.kinematics.forward import forward_kinematics
-from solver.problem import Problem
-from solver.registry import METHODS
+from solver.methods.registry import METHODS
+from solver.problem.problem import Problem
 from solver.robots.model import Array
 
 COUNTS: Final = (2, 3, 5, 10, 15, 20)

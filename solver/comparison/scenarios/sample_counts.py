@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from solver.approach.task import ApproachTask
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask
 from solver.comparison.approach_contest import (
     Variant,
     approach_contest,
@@ -19,10 +20,9 @@ from solver.comparison.contest import Account, Contest
 from solver.comparison.scenarios.data_sets import THESIS, data_set_3
 from solver.comparison.scenarios.near_limits import near_limits_problem
 from solver.methods.any_arm import Solve, on_any_arm
-from solver.methods.candidate import Candidate
 from solver.methods.floating_z import solve_floating_z
-from solver.problem import Problem
-from solver.solution import Reason
+from solver.problem.problem import Problem
+from solver.problem.solution import Reason
 
 SEED: Final = 20_123
 STARTS: Final = 20

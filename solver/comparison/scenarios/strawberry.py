@@ -6,20 +6,20 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from solver.comparison.contest import Account, Contest, Entrant, Published
-from solver.solution import PLANNED, Reason
-from solver.strawberry.analytic import solve_as
-from solver.strawberry.answer import Answer
-from solver.strawberry.as_printed import (
+from solver.comparison.strawberry.analytic import solve_as
+from solver.comparison.strawberry.answer import Answer
+from solver.comparison.strawberry.as_printed import (
     solve_as_printed,
     solve_as_printed_18,
     solve_ssas_printed,
     solve_ssas_printed_without_30,
 )
-from solver.strawberry.mechanism import Mechanism, Point, load_mechanism
-from solver.strawberry.programme import solve_ncos, solve_ncos_cold
-from solver.strawberry.semi_analytic import solve_ssas
-from solver.strawberry.table_3 import MACHINE, table_3
-from solver.strawberry.verification import verify_answer
+from solver.comparison.strawberry.mechanism import Mechanism, Point, load_mechanism
+from solver.comparison.strawberry.programme import solve_ncos, solve_ncos_cold
+from solver.comparison.strawberry.semi_analytic import solve_ssas
+from solver.comparison.strawberry.table_3 import MACHINE, table_3
+from solver.comparison.strawberry.verification import verify_answer
+from solver.problem.solution import PLANNED, Reason
 
 Solve = Callable[[Mechanism, Point], Answer | Reason]
 

@@ -14,7 +14,7 @@ from app.services.plans.wire import parse_request, problem_from_wire
 from app.services.robots.motions import target_motions
 from hardware.link.messages import TargetMotion, decode_from_service
 from solver import InvalidProblem
-from solver.frames import RigidTransform, transform_from_matrix
+from solver.frames.transforms import RigidTransform, transform_from_matrix
 from tests.app.conftest import EXAMPLE, Server, assert_problem
 from tests.app.routers.test_plans import comparable, has_null, run
 

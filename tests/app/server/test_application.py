@@ -19,11 +19,11 @@ from hardware.end_effector.output import END_EFFECTORS
 from solver import InvalidProblem, Options, Problem
 from solver.comparison.run import MAXIMUM_REPEATS, MOST_REPEATS
 from solver.comparison.summary import FAILURE_CHARGE
-from solver.frames import FURTHEST_M, ORTHONORMAL, UNIT_QUATERNION
-from solver.point_pairs import LEAST_PAIRS, MOST_PAIRS
-from solver.problem import MOST_WEIGHT, RANGES
-from solver.solution import REASON_CODES
-from solver.thinning import LONGEST_SEGMENT_M
+from solver.frames.point_pairs import LEAST_PAIRS, MOST_PAIRS
+from solver.frames.transforms import FURTHEST_M, ORTHONORMAL, UNIT_QUATERNION
+from solver.problem.problem import MOST_WEIGHT, RANGES
+from solver.problem.solution import REASON_CODES
+from solver.problem.thinning import LONGEST_SEGMENT_M
 from solver.tolerances import (
     LARGEST_STD_REACHES,
     SAME_POINT_M,

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Robot, solve
-from solver.approach.task import ApproachTask
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask
 from solver.comparison.approach_contest import (
     BETWEEN_ROWS,
     Variant,
@@ -16,10 +17,9 @@ from solver.comparison.approach_contest import (
 )
 from solver.comparison.contest import Account, Contest
 from solver.exceptions import UnknownEntrant
-from solver.methods.candidate import Candidate
+from solver.methods.registry import METHODS
 from solver.methods.semi_analytic import solve_ssas
-from solver.registry import METHODS
-from solver.solution import REASON_CODES, Reason
+from solver.problem.solution import REASON_CODES, Reason
 from solver.tolerances import AS_CHEAP_RELATIVE, AXIS_ERROR_RAD, POSITION_ERROR_M
 from tests.solver.problems import data_set_3, random_targets
 

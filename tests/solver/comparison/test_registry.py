@@ -5,7 +5,7 @@ import pytest
 from solver.comparison.contest import Account, Contest
 from solver.comparison.registry import SCENARIOS, find_scenario
 from solver.exceptions import UnknownEntrant, UnknownScenario
-from solver.registry import METHODS
+from solver.methods.registry import METHODS
 
 REACHED_BY_ALL_PLACES = ("workspace", "near-limits", "data-set-1", "data-set-2", "data-set-3")
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from solver import Robot, load_robot
-from solver.cut_in import retreat_rows
+from solver.approach.cut_in.cut_in import retreat_rows
 from solver.kinematics import numerical
 from solver.kinematics.forward import forward_kinematics, jacobian
 from solver.kinematics.numerical import chain_of, postures_behind

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from solver.approach.arcs import sample_angles
-from solver.approach.feasibility import effort, thinning, trace
-from solver.approach.task import ApproachTask
+from solver.approach.arcs.arcs import sample_angles
+from solver.approach.task.feasibility import effort, thinning, trace
+from solver.approach.task.task import ApproachTask
 from solver.compiled import kernel
 
 

@@ -1,9 +1,9 @@
 import pytest
 
 from solver import Options, Problem, Robot, solve
-from solver.approach.arcs import task_arcs
-from solver.approach.frame import signed_angle
-from solver.approach.task import approach_task
+from solver.approach.arcs.arcs import task_arcs
+from solver.approach.task.frame import signed_angle
+from solver.approach.task.task import approach_task
 from tests.solver.problems import random_targets
 
 

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Robot, solve, verify_plan
-from solver.approach.relaxation import placement
-from solver.approach.task import ApproachTask, approach_task
-from solver.cut_in import retreat_rows
-from solver.effort import posture_effort
+from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.relaxation import placement
+from solver.approach.task.task import ApproachTask, approach_task
 from solver.kinematics.forward import forward_kinematics
-from solver.methods.candidate import Candidate
 from solver.methods.ncos import solve_ncos, solve_on_arc
+from solver.methods.nlp import ipopt, sqp
+from solver.methods.nlp.backends import BACKENDS
+from solver.methods.nlp.quadratic import QP_SOLVERS
 from solver.methods.semi_analytic import best_on_arcs, solve_ssas
-from solver.nlp import ipopt, sqp
-from solver.nlp.backends import BACKENDS
-from solver.nlp.quadratic import QP_SOLVERS
+from solver.problem.effort import posture_effort
 from solver.tolerances import LIMIT_EXCESS_RAD
 from tests.solver.problems import data_set_3, random_targets
 

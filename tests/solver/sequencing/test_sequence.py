@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
+from bench.order_references import even_ladder_effort, greedy_effort
 from solver import Options, Problem, Robot, Target
-from solver.approach.batch import feasible_arcs, packed_problem
+from solver.approach.optimum.batch import feasible_arcs, packed_problem
 from solver.sequencing.batch import Batch
-from solver.sequencing.comparison import even_ladder_effort, greedy_effort
 from solver.sequencing.gather import gather
 from solver.sequencing.ladder_graph import refined_ladder
 from solver.sequencing.ordering import coarse_nodes

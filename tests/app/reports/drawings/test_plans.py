@@ -16,7 +16,7 @@ from app.reports.drawings.weights import draw_weights, robots_with_masses
 from app.schemas.demo_request import demo_request
 from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
 from solver import Problem, solve
-from solver.weights import torque_weights
+from solver.kinematics.torque_weights import torque_weights
 
 
 def planned(request: dict[str, Any]) -> tuple[dict[str, Any], Problem]:

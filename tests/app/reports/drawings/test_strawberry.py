@@ -8,8 +8,8 @@ import pytest
 
 from app.reports.drawings.strawberry import SHOWN, draw_poses, main
 from solver.comparison.scenarios.strawberry import METHODS
-from solver.strawberry.mechanism import forward_kinematics
-from tests.solver.strawberry.places import MECHANISM, TARGETS, answered
+from solver.comparison.strawberry.mechanism import forward_kinematics
+from tests.solver.comparison.strawberry.places import MECHANISM, TARGETS, answered
 
 TARGET = TARGETS[0]
 

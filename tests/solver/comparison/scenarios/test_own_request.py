@@ -3,7 +3,7 @@ import pytest
 from solver import Options, Robot
 from solver.comparison.scenarios.own_request import request_contest
 from solver.exceptions import UnknownEntrant
-from solver.registry import METHODS
+from solver.methods.registry import METHODS
 from tests.solver.problems import data_set_3
 
 

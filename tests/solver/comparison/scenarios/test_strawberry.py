@@ -4,9 +4,9 @@ import math
 import pytest
 
 from solver.comparison.scenarios.strawberry import METHODS, strawberry_contest
-from solver.strawberry.answer import Answer
-from solver.strawberry.table_3 import table_3
-from tests.solver.strawberry.places import MECHANISM, TARGETS, answered
+from solver.comparison.strawberry.answer import Answer
+from solver.comparison.strawberry.table_3 import table_3
+from tests.solver.comparison.strawberry.places import MECHANISM, TARGETS, answered
 
 CONTEST = strawberry_contest()
 ROWS = table_3()

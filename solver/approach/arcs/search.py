@@ -1,0 +1,234 @@
+"""Kernels: the feasible arcs of every branch of one target, from sampled margins and their roots.
+
+One turn is cut into cells. A cell with a constraint that is negative at both ends, and that has no
+maximum in between, is dead at once for the thinning posture alone, then for the standby posture,
+then for the whole cut-in; few cells reach the last. There a constraint that changes sign has one
+root, which is refined on its own row; a constraint that may have a maximum above zero, or a minimum
+below, between the ends has the cell split at it. So a feasible arc is found however narrow it is,
+as long as each single constraint is resolved by the cells; where a joint swings from cell to cell
+(beside a straight wrist or the waist's axis) the cells are halved until it does not.
+"""
+
+import math
+
+import numpy as np
+
+from solver.approach.arcs.cells import (
+    ARC_NODES,
+    CROSSED,
+    DEAD,
+    EDGE,
+    EXTREME,
+    FULL,
+    any_cell_reached,
+    close_cells,
+    path_state,
+)
+from solver.approach.arcs.roots import ARMS, extreme_margin, tighten
+from solver.approach.arcs.turns import (
+    CONSTRAINTS,
+    JUMP,
+    REACH,
+    path_margins,
+    reaches_at_angles,
+    row_margin,
+    turns_along_path,
+    write_turns,
+)
+from solver.compiled import kernel
+from solver.tolerances import ARC_CELLS, EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
+
+MOST_ARCS = 64
+ARC_COLUMNS = 5
+WHOLE_TURN = -1
+"""Columns of an arc: branch, lower and upper angle [rad], the constraint that ends it at each
+(WHOLE_TURN where none does)."""
+
+_STEP = 2 * math.pi / ARC_CELLS
+_ANGLES = -math.pi + _STEP * np.arange(ARC_CELLS + 1)
+_ANGLES[-1] = math.pi
+_NODES = np.concatenate(([math.pi - _STEP], _ANGLES, [_STEP - math.pi]))
+_COSINES, _SINES = np.cos(_NODES), np.sin(_NODES)
+
+
+@kernel
+def find_arcs(task, scratch, arcs):
+    """Feasible arcs of all branches into arcs, shape (MOST_ARCS, ARC_COLUMNS); returns how many."""
+    open_up(task, scratch)
+    count = 0
+    for arm in range(ARMS):
+        for wrist in range(2):
+            start = count
+            for k in range(ARC_CELLS):
+                if scratch.open_cells[arm, wrist, k]:
+                    count = cell_pieces(task, scratch, arm, wrist, k, arcs, start, count)
+            count = close_turn(arcs, start, count)
+    return count
+
+
+@kernel
+def open_up(task, scratch):
+    """Scans the thinning and the standby posture of a new task: marks the cells that stay open."""
+    scratch.open_cells[:] = True
+    scratch.known_paths[:] = False
+    scratch.known_margins[:] = False
+    values, highest = scratch.values, scratch.highest
+    for shoulder in range(2):
+        reaches_at_angles(task, _COSINES, _SINES, shoulder, values)
+        if not any_cell_reached(values, highest):
+            scratch.open_cells[2 * shoulder : 2 * shoulder + 2] = False
+            continue
+        for arm in range(2 * shoulder, 2 * shoulder + 2):
+            open_cells, thinning = scratch.open_cells[arm], scratch.thinning[arm]
+            turns_at_nodes(task, 0.0, arm, thinning)
+            if close_cells(task, thinning, values, highest, open_cells):
+                turns_at_nodes(task, task.retreats[0], arm, scratch.standby)
+                close_cells(task, scratch.standby, values, highest, open_cells)
+
+
+@kernel
+def turns_at_nodes(task, retreat, arm, turns):
+    """Turns of one arm branch at all nodes of the turn, at one retreat."""
+    turns[0], turns[1], turns[2] = _COSINES, _SINES, retreat
+    write_turns(task, ARC_NODES, arm, turns)
+
+
+@kernel
+def know_path(task, arm, k, paths, known):
+    """Turns along the cut-in at node k of one arm, computed when they are first asked for."""
+    if not known[k]:
+        turns_along_path(task, _ANGLES[k], arm, paths[k])
+        known[k] = True
+
+
+@kernel
+def know_margins(task, wrist, k, paths, margins, known):
+    """Smallest margins over that cut-in, computed when they are first asked for."""
+    if not known[k]:
+        path_margins(task, paths[k], wrist, margins[k])
+        known[k] = True
+
+
+@kernel
+def cell_pieces(task, scratch, arm, wrist, k, arcs, start, count):
+    """Appends the feasible pieces of an open cell of one branch; returns the new count."""
+    paths, known_paths = scratch.paths[arm], scratch.known_paths[arm]
+    margins, known_margins = scratch.margins[arm, wrist], scratch.known_margins[arm, wrist]
+    outer, after, beyond = (k - 1) % ARC_CELLS, (k + 1) % ARC_CELLS, (k + 2) % ARC_CELLS
+    for node in (outer, k, after, beyond):
+        know_path(task, arm, node, paths, known_paths)
+    for node in (k, after):
+        know_margins(task, wrist, node, paths, margins, known_margins)
+    at_left, at_right, left, right = paths[k], paths[after], margins[k], margins[after]
+    state, _, _ = path_state(
+        task, wrist, _STEP, paths[outer], at_left, at_right, paths[beyond], left, right
+    )
+    low, high = _ANGLES[k], _ANGLES[k + 1]
+    if state == DEAD:
+        return count
+    if state == FULL:
+        return append_arc(arcs, start, count, arm, wrist, low, high, JUMP, JUMP)
+    if state in (EDGE, CROSSED):
+        first, end = (REACH, JUMP) if state == EDGE else (0, CONSTRAINTS)
+        clean, a, b, by_a, by_b = tighten(
+            task, scratch, arm, wrist, first, end, low, high, at_left, at_right, left, right
+        )
+        if clean and a >= b:
+            return count
+        if clean and state == CROSSED:
+            return append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
+        if clean:
+            return settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count)
+    return settle(task, scratch, arm, wrist, low, high, JUMP, JUMP, arcs, start, count)
+
+
+@kernel
+def append_arc(arcs, start, count, arm, wrist, low, high, by_low, by_high):
+    """Appends a piece, or lengthens the last arc if the piece goes on where it ends."""
+    if count > start and arcs[count - 1, 2] == low:
+        arcs[count - 1, 2] = high
+        arcs[count - 1, 4] = by_high
+        return count
+    assert count < MOST_ARCS
+    arc = arcs[count]
+    arc[0], arc[1], arc[2], arc[3], arc[4] = 2 * arm + wrist, low, high, by_low, by_high
+    return count + 1
+
+
+@kernel
+def close_turn(arcs, start, count):
+    """Joins the arcs at both sides of the half turn into one that goes beyond it."""
+    if count == start or arcs[start, 1] != _ANGLES[0] or arcs[count - 1, 2] != _ANGLES[-1]:
+        return count
+    if count == start + 1:
+        arcs[start, 3] = arcs[start, 4] = WHOLE_TURN
+        return count
+    arcs[count - 1, 2] = arcs[start, 2] + 2 * math.pi
+    arcs[count - 1, 4] = arcs[start, 4]
+    for k in range(start, count - 1):
+        arcs[k] = arcs[k + 1]
+    return count - 1
+
+
+@kernel
+def push(stack, top, low, high, by_low, by_high):
+    """Writes a cell, and what ends it at both sides, to a row of the stack."""
+    stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3] = low, high, by_low, by_high
+
+
+@kernel
+def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count):
+    """Appends the feasible pieces of a cell that has to be split; returns the new count."""
+    stack = np.empty((64, 4))
+    push(stack, 0, low, high, by_low, by_high)
+    top = 1
+    paths, margins = scratch.cell_paths, scratch.cell_margins
+    while top > 0:
+        top -= 1
+        a, b, by_a, by_b = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
+        width = b - a
+        for m in range(4):
+            angle = a + (m - 1) * width if m != 2 else b
+            turns_along_path(task, angle, arm, paths[m])
+        path_margins(task, paths[1], wrist, margins[0])
+        path_margins(task, paths[2], wrist, margins[1])
+        state, i, row = path_state(
+            task, wrist, width, paths[0], paths[1], paths[2], paths[3], margins[0], margins[1]
+        )
+        middle = (a + b) / 2
+        if state == DEAD:
+            continue
+        if state == FULL:
+            count = append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
+            continue
+        if state in (CROSSED, EDGE):
+            first, end = (REACH, JUMP) if state == EDGE else (0, CONSTRAINTS)
+            clean, c, d, by_c, by_d = tighten(
+                task, scratch, arm, wrist, first, end, a, b,
+                paths[1], paths[2], margins[0], margins[1],
+            )  # fmt: skip
+            by_c, by_d = by_a if c == a else by_c, by_b if d == b else by_d
+            if clean and c >= d:
+                continue
+            if clean and state == CROSSED:
+                count = append_arc(arcs, start, count, arm, wrist, c, d, by_c, by_d)
+                continue
+            if clean and d - c < width:
+                push(stack, top, c, d, by_c, by_d)
+                top += 1
+                continue
+        if width < NARROWEST_CELL_RAD or top + 2 > len(stack):
+            continue  # a straight wrist, where no angle keeps its branch
+        if state == EXTREME and i >= 0:
+            sign = 1.0
+            if i != JUMP and row_margin(task, paths[1], row, wrist, i) >= 0.0:
+                sign = -1.0
+            where, value = extreme_margin(task, scratch, arm, wrist, i, row, a, b, sign)
+            if sign > 0.0 and value < 0.0:
+                continue
+            if min(where - a, b - where) > EXTREME_ANGLE_RAD:
+                middle = where
+        push(stack, top, middle, b, JUMP, by_b)
+        push(stack, top + 1, a, middle, by_a, JUMP)
+        top += 2
+    return count

@@ -1,0 +1,1 @@
+"""Proven bounds: interval arithmetic, the closed form enclosed, branch and bound."""

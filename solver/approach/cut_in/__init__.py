@@ -1,0 +1,1 @@
+"""The straight cut-in of a candidate, at its rows and between them."""

@@ -1,0 +1,1 @@
+"""Arms without a closed form: postures by Newton's method from many starts."""

@@ -1,0 +1,1 @@
+"""Why a target has no approach, and the nearest change that gives it one."""

@@ -1,0 +1,129 @@
+"""One target's task definition: what every method is given."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from solver.approach.task.feasibility import CutInTask, trace
+from solver.approach.task.frame import ApproachFrame, approach_frame
+from solver.approach.task.packed import PackedTask, jump_cosines, pack
+from solver.kinematics.spherical_wrist import wrist_geometry
+from solver.problem.problem import Options, Problem, Target
+from solver.robots.model import Array, Robot, Tool
+from solver.robots.rigid import inverse
+
+
+@dataclass(frozen=True)
+class ApproachTask:
+    """A target, the posture that effort counts from, and the rows of the cut-in that must hold.
+
+    Attributes:
+        retreats_m: distances behind the target at which the cut-in has to be feasible, from the
+            standoff down to 0 [m].
+    """
+
+    robot: Robot
+    tool: Tool
+    options: Options
+    target: Target
+    reference: tuple[float, ...]
+    joint_weights: tuple[float, ...]
+    retreats_m: tuple[float, ...]
+
+    @cached_property
+    def frame(self) -> ApproachFrame:
+        """The target's approach frame."""
+        return approach_frame(self.target.position_m, self.target.branch_direction)
+
+    @property
+    def tool_sides(self) -> tuple[int, ...]:
+        """Sides that the tool may take: 1, and -1 too when it is symmetric."""
+        return (1, -1) if self.options.symmetric_tool else (1,)
+
+    @cached_property
+    def lower(self) -> Array:
+        """Lower limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
+        return np.asarray(self.robot.lower + self.options.limit_margin_rad * self.robot.turning)
+
+    @cached_property
+    def upper(self) -> Array:
+        """Upper limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
+        return np.asarray(self.robot.upper - self.options.limit_margin_rad * self.robot.turning)
+
+    def for_kernels(self, tool_side: int) -> CutInTask:
+        """The task as the kernels take it, with the tool on one side, in the mount's frame."""
+        position, y_axis, outward, sideways = self._vectors(tool_side)
+        return CutInTask(
+            geometry=wrist_geometry(self.robot, self.tool),
+            lower=self.lower,
+            upper=self.upper,
+            position=position,
+            y_axis=y_axis,
+            outward=outward,
+            sideways=sideways,
+            retreats=np.asarray(self.retreats_m),
+            reference=np.asarray(self.reference),
+            weights=np.asarray(self.joint_weights),
+            squared=self.options.norm == "l2",
+        )
+
+    def _vectors(self, tool_side: int) -> tuple[Array, Array, Array, Array]:
+        """Target, y axis, approach directions at 0 and at a quarter turn, in the mount's frame."""
+        mount, frame = inverse(self.robot.mount), self.frame
+        turn = mount[:3, :3]
+        position = turn @ np.asarray(self.target.position_m, dtype=np.float64) + mount[:3, 3]
+        y_axis = turn @ (tool_side * frame.branch)
+        return position, y_axis, turn @ frame.outward, turn @ frame.sideways
+
+    def packed(self, tool_side: int) -> PackedTask:
+        """The task as the inner loops take it, with the tool on one side, in the mount's frame."""
+        return self._packed[tool_side]
+
+    @cached_property
+    def _packed(self) -> dict[int, PackedTask]:
+        return {side: self._pack(side) for side in self.tool_sides}
+
+    def _pack(self, tool_side: int) -> PackedTask:
+        position, y_axis, outward, sideways = self._vectors(tool_side)
+        numbers = pack(
+            wrist_geometry(self.robot, self.tool),
+            (self.lower, self.upper),
+            (position[None], y_axis[None], outward[None], sideways[None]),
+            np.asarray(self.reference),
+            np.asarray(self.joint_weights),
+            self.options.norm == "l2",
+        )
+        return PackedTask(numbers[0], np.asarray(self.retreats_m), jump_cosines(self.retreats_m))
+
+    def postures(self, angle: float, tool_side: int, branch: int, retreats: Array) -> Array:
+        """Closed-form postures of the cut-in, shape (len(retreats), 6) [rad]; retreats end at 0."""
+        rows = np.empty((len(retreats), 6))
+        trace(self.for_kernels(tool_side), angle, branch, np.ascontiguousarray(retreats), rows)
+        return rows
+
+    def thinning_joints(self, angle: float, tool_side: int, branch: int) -> tuple[float, ...]:
+        """The closed-form posture at the target [rad]."""
+        # With its whole cut-in, which decides the turn of joints that can turn further than once.
+        row = self.postures(angle, tool_side, branch, np.asarray(self.retreats_m))[-1]
+        return tuple(float(value) for value in row)
+
+    def with_retreat(self, retreat: float) -> "ApproachTask":
+        """The same task with one more row at which the cut-in has to be feasible."""
+        return replace(self, retreats_m=tuple(sorted({*self.retreats_m, retreat}, reverse=True)))
+
+
+def approach_task(problem: Problem, target: Target, reference: Sequence[float]) -> ApproachTask:
+    """The task of one target of a problem, seen from a reference posture [rad]."""
+    options = problem.options
+    rows = np.linspace(options.standoff_m, 0.0, options.path_points)
+    return ApproachTask(
+        robot=problem.robot,
+        tool=problem.mounted_tool,
+        options=options,
+        target=target,
+        reference=tuple(float(value) for value in reference),
+        joint_weights=problem.joint_weights,
+        retreats_m=tuple(float(row) for row in rows),
+    )

@@ -1,0 +1,115 @@
+"""Uncertain targets: how far one may move, and the approaches that bear it.
+
+A target with a standard deviation is planned so that its posture, with its orientation and branch
+kept, stays feasible when the target is `UNCERTAINTY_DEVIATIONS` standard deviations away in any
+direction, at every row of the cut-in. To first order that takes the deviation times the length of
+the joint's gradient (its row of the inverse Jacobian) from each limit, and the deviation from the
+reach; what is used is the exact distance to the nearest limit.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.displacement import displacement_margin, rows_displacement_margins
+from solver.approach.uncertainty.robust_search import robust_pieces
+from solver.kinematics.families import rail_of
+from solver.kinematics.forward import many_poses
+from solver.kinematics.spherical_wrist import wrist_geometry
+from solver.problem.problem import Options, Target
+from solver.robots.model import Array, Robot, Tool
+from solver.robots.rigid import inverse
+from solver.tolerances import UNCERTAINTY_DEVIATIONS
+
+if TYPE_CHECKING:
+    from solver.approach.arcs.arcs import Arc
+
+
+def needed_margin(target: Target) -> float:
+    """How far a target has to be free to move, 0 when its position is known exactly [m]."""
+    return UNCERTAINTY_DEVIATIONS * (target.position_std_m or 0.0)
+
+
+def robust_arcs(task: ApproachTask, arcs: Sequence["Arc"]) -> tuple["Arc", ...]:
+    """The parts of feasible arcs that bear the target's uncertainty; all where it has none."""
+    needed = needed_margin(task.target)
+    if needed == 0.0:
+        return tuple(arcs)
+    found: list[Arc] = []
+    for arc in arcs:
+        kernels = task.for_kernels(arc.tool_side)
+        parts, _, _ = robust_pieces(kernels, arc.branch, arc.lower_rad, arc.upper_rad, needed)
+        found += [_part(arc, float(low), float(high)) for low, high in parts]
+    return tuple(found)
+
+
+def _part(arc: "Arc", low: float, high: float) -> "Arc":
+    return replace(
+        arc,
+        lower_rad=low,
+        upper_rad=high,
+        lower_limit=arc.lower_limit if low == arc.lower_rad else "uncertainty",
+        upper_limit=arc.upper_limit if high == arc.upper_rad else "uncertainty",
+    )
+
+
+def bears_uncertainty(task: ApproachTask, angle: float, tool_side: int, branch: int) -> bool:
+    """Whether an approach stays feasible however uncertain its target is."""
+    needed = needed_margin(task.target)
+    if needed == 0.0:
+        return True
+    rows = np.empty((len(task.retreats_m), 6))
+    margin, _, _ = displacement_margin(task.for_kernels(tool_side), angle, branch, rows)
+    return bool(margin >= needed)
+
+
+def path_displacement_margin(
+    robot: Robot, tool: Tool, options: Options, branch: int, path_joints: Array
+) -> float:
+    """How far a target may move until a row of its cut-in meets a limit [m].
+
+    The tool moves with the target, its orientation and branch kept; the limits are the robot's less
+    `limit_margin_rad`, the reach, and the straight wrist, which no branch passes without a jump.
+
+    Args:
+        robot: an arm with a spherical wrist, on a rail that stands still or not.
+        tool: its tool.
+        options: of the problem.
+        branch: inverse kinematics branch.
+        path_joints: the cut-in, evenly spaced, standby first, shape (rows, 6) [rad].
+    """
+    rows = np.asarray(path_joints, dtype=np.float64)
+    if (rail := rail_of(robot, tool)) is not None:
+        robot, rows = rail.arm_at(float(rows[-1, 0])), rows[:, 1:]
+    return float(displacement_margins(robot, tool, options, np.array([branch]), rows[None])[0])
+
+
+def displacement_margins(
+    robot: Robot, tool: Tool, options: Options, branches: NDArray[np.int64], paths: Array
+) -> Array:
+    """`path_displacement_margin` of n cut-ins of an arm that is not on a rail, shape (n,) [m].
+
+    Args:
+        robot: an arm with a spherical wrist.
+        tool: its tool.
+        options: of the problem.
+        branches: inverse kinematics branches, shape (n,).
+        paths: evenly spaced, standby first, shape (n, rows, 6) [rad].
+    """
+    paths = np.ascontiguousarray(paths, dtype=np.float64)
+    margins = np.empty(len(paths))
+    rows_displacement_margins(
+        wrist_geometry(robot, tool),
+        np.asarray(robot.lower + options.limit_margin_rad),
+        np.asarray(robot.upper - options.limit_margin_rad),
+        np.ascontiguousarray(inverse(robot.mount) @ many_poses(robot, tool, paths[:, -1])),
+        np.linspace(options.standoff_m, 0.0, paths.shape[1]),
+        branches,
+        paths,
+        margins,
+    )
+    return margins

@@ -1,0 +1,1 @@
+"""Frames other than the base: poses, pairs of points, registration."""

@@ -1,0 +1,59 @@
+"""IPOPT on a programme of the task definition."""
+
+from functools import lru_cache
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from solver.methods.nlp.formulation import Shape, build_programme
+from solver.methods.nlp.instance import Instance, ProgrammeResult
+from solver.robots.model import Robot
+from solver.tolerances import NLP_BARRIER, NLP_BOUND_PUSH, NLP_ITERATIONS, NLP_TOLERANCE
+
+
+@lru_cache(maxsize=64)
+def _solver(robot: Robot, shape: Shape, iterations: int) -> Any:
+    """IPOPT on a robot's programme, built once in a process."""
+    options: dict[str, Any] = {
+        "print_time": False,
+        "error_on_fail": False,
+        "calc_lam_p": False,
+        "ipopt": {
+            "print_level": 0,
+            "sb": "yes",
+            "tol": NLP_TOLERANCE,
+            "max_iter": iterations,
+            "mu_init": NLP_BARRIER,
+            "bound_push": NLP_BOUND_PUSH,
+            "bound_frac": NLP_BOUND_PUSH,
+            "bound_relax_factor": 0.0,
+        },
+    }
+    return ca.nlpsol("task_definition", "ipopt", build_programme(robot, shape).nlp, options)
+
+
+def solve_by_ipopt(robot: Robot, instance: Instance) -> ProgrammeResult:
+    """Solves a programme; `status` is IPOPT's own word."""
+    solver = _solver(robot, instance.programme.shape, NLP_ITERATIONS)
+    lower, upper = instance.constraint_bounds
+    try:
+        answer = solver(
+            x0=instance.x0,
+            p=instance.parameters,
+            lbx=instance.lower,
+            ubx=instance.upper,
+            lbg=lower,
+            ubg=upper,
+        )
+    except RuntimeError as error:
+        # CasADi raises what it cannot even begin with; the caller falls back on its warm start.
+        what = str(error).partition("\n")[0]
+        return ProgrammeResult(False, f"error: {what}", 0, instance.x0)
+    stats = solver.stats()
+    return ProgrammeResult(
+        bool(stats["success"]),
+        str(stats["return_status"]),
+        int(stats["iter_count"]),
+        np.array(answer["x"]).ravel(),
+    )

@@ -1,0 +1,124 @@
+"""The relaxed programme from one start to an exact posture whose whole cut-in holds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.task.relaxation import Placement, rotation
+from solver.approach.task.task import ApproachTask
+from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.methods.nlp.backends import solve_instance
+from solver.methods.nlp.formulation import build_programme
+from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
+from solver.robots.model import Array
+from solver.tolerances import (
+    JOINT_RATE_RAD_M,
+    LIMIT_EXCESS_RAD,
+    POSITION_ERROR_M,
+    RELAXED_ROUNDS,
+    SAME_BRANCH_RAD,
+)
+
+
+@dataclass(frozen=True)
+class RelaxedAnswer:
+    """What one start came to.
+
+    Attributes:
+        status: "solved", or what went wrong.
+        iterations: of the backend, over all rounds.
+        tool_side: 1 or -1.
+        branch: of the thinning posture.
+        thinning: the exact posture, shape (joints,) [rad]; None without an answer.
+    """
+
+    status: str
+    iterations: int
+    tool_side: int
+    branch: int = 0
+    thinning: Array | None = None
+
+
+def solve_relaxed(
+    task: ApproachTask, start: Start, next_thinning: Sequence[float] | None
+) -> RelaxedAnswer:
+    """Solves a relaxed task from one start.
+
+    The programme keeps limits at thinning and standby. A row of the cut-in that does not hold
+    becomes a further posture of the programme, which goes on from where it was.
+    """
+    spent = 0
+    for _ in range(RELAXED_ROUNDS):
+        shape = shape_of(task, coupled=next_thinning is not None, rows=len(start.postures) - 2)
+        programme = build_programme(task.robot, shape)
+        instance = make_instance(task, programme, start, next_thinning)
+        result = solve_instance(task.robot, instance, task.options)
+        spent += result.iterations
+        if not result.success:
+            return RelaxedAnswer(result.status, spent, start.tool_side)
+        seen = placed(task, programme, result.x)
+        exact = _exact_posture(task, start.tool_side, seen, result.x[: programme.joints])
+        if exact is None:
+            return RelaxedAnswer("not_on_the_closed_form", spent, start.tool_side)
+        branch, thinning = exact
+        retreats = np.asarray(task.retreats_m)
+        rows = retreat_rows(task.robot, task.tool, tuple(thinning), branch, retreats)
+        broken = _broken_row(task, rows, retreats)
+        if broken is None:
+            if _jumps(rows, retreats):
+                return RelaxedAnswer("wrist_jump", spent, start.tool_side)
+            return RelaxedAnswer("solved", spent, start.tool_side, branch, thinning)
+        if retreats[broken] in start.retreats_m:
+            return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
+        postures = result.x[: programme.angle].reshape(programme.postures, programme.joints)
+        start = replace(
+            start,
+            approach_angle_rad=seen.approach_angle_rad,
+            postures=np.vstack((postures, rows[broken])),
+            retreats_m=np.append(start.retreats_m, retreats[broken]),
+            strike_m=seen.strike_m,
+            swing_rad=seen.swing_rad,
+        )
+    return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
+
+
+def pose_of(task: ApproachTask, tool_side: int, seen: Placement) -> Array:
+    """The tool frame of a placement, shape (4, 4) [m]."""
+    pose = np.eye(4)
+    pose[:3, :3] = rotation(seen.swing_rad) @ task.frame.axes(seen.approach_angle_rad, tool_side)
+    pose[:3, 3] = np.asarray(task.target.position_m) + seen.strike_m * pose[:3, 2]
+    return pose
+
+
+def _exact_posture(
+    task: ApproachTask, tool_side: int, seen: Placement, near: Array
+) -> tuple[int, Array] | None:
+    """Branch and posture of the closed form next to a programme's, if there is one."""
+    found = inverse_kinematics(task.robot, task.tool, pose_of(task, tool_side, seen)[None])
+    # On the programme's turn, for joints that can turn further than once.
+    turned = np.remainder(found.joints[0] - near + np.pi, 2 * np.pi) - np.pi
+    apart = np.where(found.reachable[0], np.abs(turned).max(axis=1), np.inf)
+    branch = int(apart.argmin())
+    if apart[branch] > SAME_BRANCH_RAD:
+        return None
+    return branch, near + turned[branch]
+
+
+def _broken_row(task: ApproachTask, rows: Array, retreats: Array) -> int | None:
+    """The row that is furthest from holding: outside the limits, or not where it has to be."""
+    beyond = np.maximum(task.lower - rows, rows - task.upper).max(axis=1)
+    poses = forward_kinematics(task.robot, task.tool, rows)
+    wanted = poses[-1, :3, 3] - np.outer(retreats, poses[-1, :3, 2])
+    off = np.linalg.norm(poses[:, :3, 3] - wanted, axis=1)
+    outside = np.where(off > POSITION_ERROR_M / 2, off, 0.0)
+    worst = np.maximum(beyond, outside)
+    k = int(worst.argmax())
+    return k if worst[k] > LIMIT_EXCESS_RAD / 2 else None
+
+
+def _jumps(rows: Array, retreats: Array) -> bool:
+    rates = np.abs(np.diff(rows, axis=0)).max(axis=1) / -np.diff(retreats)
+    return bool(rates.max() > JOINT_RATE_RAD_M)

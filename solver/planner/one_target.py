@@ -1,0 +1,83 @@
+"""One target of a batch: solved, its cut-in built, verified."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from solver.approach.arcs.arcs import task_arcs
+from solver.approach.bounds.certificate import certify_task, is_infeasible
+from solver.approach.cut_in.cut_in import broken_limit, build_cut_in
+from solver.approach.task.candidate import Candidate
+from solver.approach.task.task import ApproachTask, approach_task
+from solver.methods.any_arm import Solve
+from solver.methods.registry import METHODS
+from solver.planner.proposal import propose
+from solver.problem.problem import Problem, Target
+from solver.problem.solution import INFEASIBLE, Approach, Reason, SolverReport
+from solver.sequencing.programmed import programmed
+from solver.sequencing.sequence import Stop
+from solver.tolerances import EXCHANGE_ROUNDS
+from solver.verification.verify import judge
+
+
+def plan_target(
+    problem: Problem,
+    target: Target,
+    reference: Sequence[float],
+    stop: Stop | None = None,
+    following: Stop | None = None,
+) -> Approach:
+    """The approach to one target from a reference posture.
+
+    Args:
+        problem: what was asked.
+        target: one of its targets.
+        reference: where effort and transfer count from, shape (joints,) [rad or m].
+        stop: what was chosen for the target in a batch planned as one.
+        following: the next stop of that batch.
+    """
+    started = time.perf_counter()
+    task = approach_task(problem, target, reference)
+    method = problem.options.method
+    outcome: Candidate | Reason
+    if stop is None:
+        outcome, task = solve_between_rows_too(task, METHODS[method].solve)
+    else:
+        # A batch is planned as seen from the start; its efforts and their bounds count from here.
+        task = replace(stop.task, reference=task.reference)
+        outcome = programmed(task, stop, following) if method == "ncos" else stop.candidate
+    elapsed = time.perf_counter() - started
+    arcs = task_arcs(task) if "arcs" in (problem.options.include or ()) else None
+    if isinstance(outcome, Reason):
+        if problem.options.certify:
+            outcome = replace(outcome, proven=is_infeasible(task))
+        report = SolverReport(method, elapsed, 0, outcome.code)
+        return Approach(target.id, INFEASIBLE, report, reason=outcome, arcs=arcs)
+    report = SolverReport(method, elapsed, outcome.iterations, outcome.status)
+    cut_in = build_cut_in(task, outcome)
+    approach = propose(problem, target, outcome, cut_in, reference, report)
+    if problem.options.certify:
+        bound = certify_task(task, approach.effort).lower_bound
+        approach = replace(approach, lower_bound=bound)
+    return replace(judge(problem, approach, reference), arcs=arcs)
+
+
+def solve_between_rows_too(
+    task: ApproachTask, solve: Solve
+) -> tuple[Candidate | Reason, ApproachTask]:
+    """A method's answer, with limits that hold between the rows of the cut-in as well.
+
+    Also returns the task as it was solved last.
+
+    A posture between two rows that breaks a limit becomes a row, and the target is solved again
+    (the exchange method of semi-infinite programming).
+    """
+    for _ in range(EXCHANGE_ROUNDS):
+        outcome = solve(task)
+        if isinstance(outcome, Reason):
+            return outcome, task
+        retreat = broken_limit(task, outcome)
+        if retreat is None or retreat in task.retreats_m:
+            return outcome, task
+        task = task.with_retreat(retreat)
+    return outcome, task

@@ -1,0 +1,90 @@
+"""From a candidate and its cut-in to a whole approach with timed motion, for the verifier."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solver.approach.cut_in.cut_in import CutIn
+from solver.approach.task.candidate import Candidate
+from solver.approach.uncertainty.robustness import path_displacement_margin
+from solver.motion.timing import TimedRows, time_joint_line
+from solver.problem.effort import posture_effort
+from solver.problem.problem import Problem, Target
+from solver.problem.solution import Approach, Segment, SolverReport, Trajectory, Transfer
+from solver.robots.model import Array
+from solver.tolerances import TRAJECTORY_STEP_S
+from solver.verification.motion import cut_in_margin
+from solver.verification.verify import thinning_placement
+
+PROPOSED = "proposed"
+
+
+def propose(
+    problem: Problem,
+    target: Target,
+    candidate: Candidate,
+    cut_in: CutIn,
+    reference: Sequence[float],
+    report: SolverReport,
+) -> Approach:
+    """The approach of a candidate, with a transfer from the reference posture [rad]."""
+    start = np.asarray(reference, dtype=np.float64)
+    standby, thinning = cut_in.path_joints[0], cut_in.path_joints[-1]
+    transfer = trajectory = None
+    if cut_in.motion is not None:
+        transfer = Transfer(
+            "joint_line",
+            np.array([start, standby]),
+            float(np.linalg.norm((standby - start) * problem.robot.turning)),
+        )
+        trajectory = _trajectory(problem, start, cut_in.motion)
+    used = thinning_placement(problem, target, candidate.tool_side, thinning)
+    options = problem.options
+    return Approach(
+        target_id=target.id,
+        status=PROPOSED,
+        solver=report,
+        approach_angle_rad=candidate.approach_angle_rad,
+        tool_side=candidate.tool_side,
+        branch=candidate.branch,
+        strike_m=used.strike_m if options.strike_zone_m > 0 else None,
+        tilt_rad=used.tilt_rad if options.tilt_tolerance_rad > 0 else None,
+        thinning_joints=thinning,
+        standby_joints=standby,
+        path_joints=cut_in.path_joints,
+        path_deviation_m=cut_in.deviation_m,
+        effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
+        margin_rad=cut_in_margin(problem, cut_in.path_joints, cut_in.rows),
+        displacement_margin_m=_displacement_margin(problem, candidate, cut_in),
+        transfer=transfer,
+        trajectory=trajectory,
+    )
+
+
+def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) -> float | None:
+    if candidate.branch is None:
+        return None  # no closed form to follow a displaced target with
+    return path_displacement_margin(
+        problem.robot, problem.mounted_tool, problem.options, candidate.branch, cut_in.path_joints
+    )
+
+
+def _trajectory(problem: Problem, reference: Array, motion: TimedRows) -> Trajectory:
+    standby, thinning = motion.joints[0], motion.joints[-1]
+    dwell_s = problem.options.dwell_s
+    still = np.array([thinning, thinning]) if dwell_s > 0 else thinning[None]
+    pieces = {
+        "transfer": time_joint_line(problem.robot, reference, standby, TRAJECTORY_STEP_S),
+        "cut_in": motion,
+        "dwell": TimedRows(np.array([0.0, dwell_s])[: len(still)], still),
+        "retreat": motion.reversed(),
+    }
+    now = 0.0
+    times, rows, segments = [np.zeros(1)], [reference[None]], []
+    for name, piece in pieces.items():
+        times.append(now + piece.times_s[1:])
+        rows.append(piece.joints[1:])
+        end = float(times[-1][-1]) if len(piece.times_s) > 1 else now
+        segments.append(Segment(name, now, end))
+        now = end
+    return Trajectory(np.concatenate(times), np.concatenate(rows), tuple(segments))

@@ -1,0 +1,1 @@
+"""Question and answer: targets, options and problem, checked; plan, approach and reason."""

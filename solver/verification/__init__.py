@@ -1,0 +1,1 @@
+"""The one verifier: residuals of every answer, recomputed from the problem."""

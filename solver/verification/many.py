@@ -1,0 +1,152 @@
+"""The verifier for many cut-ins at once, without timed motion.
+
+Nobody claims efforts, margins or deviations here: the verifier measures them from the rows, and
+what it measured is the answer.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.approach.cut_in.cut_in import line_deviations, many_retreat_rows
+from solver.approach.task.frame import approach_frames
+from solver.approach.uncertainty.robustness import displacement_margins
+from solver.problem.problem import Problem
+from solver.problem.solution import PLANNED, Approach, SolverReport
+from solver.robots.model import Array
+from solver.tolerances import TRAJECTORY_HALVINGS
+from solver.verification.paths import (
+    ClaimedPaths,
+    branch_residuals,
+    deviation_residuals,
+    efforts_between,
+    margin_residuals,
+    path_residuals,
+)
+
+
+@dataclass(frozen=True)
+class ProposedPaths:
+    """Approaches to n exact targets of a problem.
+
+    Attributes:
+        target_ids: whose.
+        positions: of the targets, shape (n, 3) [m].
+        directions: of their branches, any length, shape (n, 3).
+        angles_rad: approach angles, in (-pi, pi], shape (n,) [rad].
+        tool_sides: 1 or -1, shape (n,).
+        branches: 0 to 7, shape (n,).
+        paths: the cut-ins, standby first, shape (n, path_points, 6) [rad].
+        references: postures from which efforts count, shape (n, 6) [rad].
+    """
+
+    target_ids: Sequence[str]
+    positions: Array
+    directions: Array
+    angles_rad: Array
+    tool_sides: NDArray[np.int64]
+    branches: NDArray[np.int64]
+    paths: Array
+    references: Array
+
+
+def judge_many(
+    problem: Problem, proposed: ProposedPaths, reports: Sequence[SolverReport]
+) -> dict[str, Approach]:
+    """The approaches that verify, as planned, by target id; the others are left out.
+
+    Args:
+        problem: without relaxations, of an arm with a closed form that is not on a rail.
+        proposed: its approaches.
+        reports: what the method did for each.
+    """
+    if not proposed.target_ids:
+        return {}
+    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
+    claimed = _claimed(proposed)
+    standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
+    deviations, margins = _as_executed(problem, proposed.branches, claimed)
+    residuals = (
+        *path_residuals(problem, claimed, standby, thinning),
+        *branch_residuals(problem, claimed, proposed.branches),
+        *deviation_residuals(problem, deviations, deviations),
+        *margin_residuals(problem, claimed, margins, margins),
+    )
+    accepted = np.logical_and.reduce([residual.accepted for residual in residuals])
+    accepted &= np.isin(proposed.tool_sides, (1, -1) if options.symmetric_tool else (1,))
+    room = displacement_margins(robot, tool, options, proposed.branches, claimed.paths)
+    efforts = efforts_between(problem, thinning, proposed.references)
+    columns = zip(
+        proposed.target_ids,
+        reports,
+        proposed.angles_rad.tolist(),
+        proposed.tool_sides.tolist(),
+        proposed.branches.tolist(),
+        claimed.paths,
+        deviations.tolist(),
+        efforts.tolist(),
+        margins.tolist(),
+        room.tolist(),
+        accepted.tolist(),
+        strict=True,
+    )
+    return {
+        target_id: Approach(
+            target_id=target_id,
+            status=PLANNED,
+            solver=report,
+            approach_angle_rad=angle,
+            tool_side=side,
+            branch=branch,
+            thinning_joints=path[-1],
+            standby_joints=path[0],
+            path_joints=path,
+            path_deviation_m=deviation,
+            effort=effort,
+            margin_rad=margin,
+            displacement_margin_m=displacement,
+        )
+        for (
+            target_id, report, angle, side, branch, path, deviation, effort, margin, displacement,
+            holds,
+        ) in columns
+        if holds
+    }  # fmt: skip
+
+
+def _as_executed(
+    problem: Problem, branches: NDArray[np.int64], claimed: ClaimedPaths
+) -> tuple[Array, Array]:
+    """How far motion leaves the lines [m], and its distance to a limit [rad], shape (n,) each.
+
+    Motion goes through the rows, or where those are not straight enough through finer ones.
+    """
+    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
+    deviations = line_deviations(robot, tool, claimed.paths, claimed.places, claimed.axes[..., 2])
+    margins = robot.limit_margin(claimed.paths).min(axis=1)
+    count = options.path_points
+    for _ in range(TRAJECTORY_HALVINGS):
+        bent = np.flatnonzero(deviations > options.straightness_m)
+        if not len(bent):
+            break
+        count = 2 * count - 1
+        retreats = np.linspace(options.standoff_m, 0.0, count)
+        rows = many_retreat_rows(robot, tool, claimed.paths[bent, -1], branches[bent], retreats)
+        lines = claimed.places[bent], claimed.axes[bent, :, 2]
+        deviations[bent] = line_deviations(robot, tool, rows, *lines)
+        margins[bent] = np.minimum(
+            robot.limit_margin(claimed.paths[bent]).min(axis=1),
+            robot.limit_margin(rows).min(axis=1),
+        )
+    return deviations, margins
+
+
+def _claimed(proposed: ProposedPaths) -> ClaimedPaths:
+    branch, outward, sideways = approach_frames(proposed.positions, proposed.directions)
+    angles = proposed.angles_rad[:, None]
+    z = np.cos(angles) * outward + np.sin(angles) * sideways
+    y = proposed.tool_sides[:, None] * branch
+    axes = np.stack((np.cross(y, z), y, z), axis=-1)
+    return ClaimedPaths(np.ascontiguousarray(proposed.paths), proposed.positions, axes)

@@ -1,0 +1,294 @@
+"""The one verifier: recomputes every residual of an answer from the problem alone.
+
+It is the only place that gives an approach the status "planned". It believes no number that a
+method reports: positions, axes, limits, effort, straightness and speeds are computed anew from the
+postures. Forward kinematics is plain NumPy here; methods use the closed form and CasADi.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from solver.approach.cut_in.cut_in import refined_rows
+from solver.approach.numerical.warm_start import same_side
+from solver.approach.task.frame import approach_frame
+from solver.approach.task.relaxation import Placement, placement, rotation, shortened
+from solver.approach.uncertainty.robustness import needed_margin, path_displacement_margin
+from solver.kinematics.families import has_branches
+from solver.kinematics.forward import forward_kinematics
+from solver.kinematics.spherical_wrist import BRANCHES
+from solver.problem.effort import posture_effort
+from solver.problem.problem import Problem, Target
+from solver.problem.solution import (
+    INFEASIBLE,
+    PLANNED,
+    Approach,
+    Plan,
+    Reason,
+    Trajectory,
+    Transfer,
+)
+from solver.robots.model import Array
+from solver.tolerances import (
+    AXIS_ERROR_RAD,
+    EFFORT_ERROR_RELATIVE,
+    POSITION_ERROR_M,
+)
+from solver.verification.motion import (
+    Motion,
+    cut_in_margin,
+    motion_residuals,
+    segment_rows,
+    shape_residuals,
+)
+from solver.verification.paths import (
+    ClaimedPaths,
+    Residuals,
+    branch_residuals,
+    deviation_residuals,
+    displacement_residuals,
+    effort_residuals,
+    margin_residuals,
+    path_residuals,
+)
+from solver.verification.residual import Residual, Verification
+
+MAY_BE_ABSENT = ("branch", "lower_bound", "displacement_margin_m")
+TIMED_FIELDS = ("transfer", "trajectory")
+
+
+def verify(problem: Problem, approach: Approach, reference: Sequence[float]) -> Verification:
+    """Residuals of an approach that claims to be a solution, whatever status it carries.
+
+    Args:
+        problem: what was asked.
+        approach: the answer for one of its targets.
+        reference: posture from which effort and transfer count: the start, or unless independent
+            the previous planned standby, shape (6,) [rad].
+    """
+    target = problem.targets_by_id.get(approach.target_id)
+    claim = _claim(problem, approach)
+    if target is None or claim is None:
+        return Verification((Residual("missing_fields", 1.0, 0.0),))
+    parts = (
+        _shape_residuals(problem, claim),
+        _path_residuals(problem, target, claim),
+        _relaxation_residuals(problem, target, approach, claim),
+        _number_residuals(problem, target, claim, reference),
+        _displacement_residuals(problem, target, claim),
+        _timing_residuals(problem, target, claim, reference),
+    )
+    found: list[Residual] = []
+    for part in parts:
+        found += part
+        if not all(residual.accepted for residual in found):
+            break  # later parts rely on the shapes and postures that earlier ones check
+    return Verification(tuple(found))
+
+
+def judge(problem: Problem, approach: Approach, reference: Sequence[float]) -> Approach:
+    """The approach as planned if it verifies, else as infeasible with what failed."""
+    verification = verify(problem, approach, reference)
+    if verification.accepted:
+        return replace(approach, status=PLANNED)
+    reason = refusal(verification)
+    return Approach(approach.target_id, INFEASIBLE, approach.solver, reason=reason)
+
+
+def refusal(verification: Verification) -> Reason:
+    """The reason why an approach is none: what of it did not verify."""
+    failed = ", ".join(
+        f"{residual.name} {residual.value:.3g} (allowed {residual.allowed:.3g})"
+        for residual in verification.failures
+    )
+    return Reason("solver_failed", f"the answer did not verify: {failed}")
+
+
+def verify_plan(plan: Plan) -> dict[str, Verification]:
+    """Verification of every approach that a plan calls planned, by target id."""
+    results: dict[str, Verification] = {}
+    reference = plan.problem.start
+    for approach in plan.approaches:
+        if approach.status != PLANNED:
+            continue
+        results[approach.target_id] = verify(plan.problem, approach, reference)
+        if plan.problem.options.order != "independent" and approach.standby_joints is not None:
+            reference = tuple(approach.standby_joints)
+    return results
+
+
+@dataclass(frozen=True)
+class _Claim:
+    """The fields of an approach that claims to be planned; those that may be None may be absent."""
+
+    approach_angle_rad: float
+    tool_side: int
+    branch: int | None
+    thinning_joints: Array
+    standby_joints: Array
+    path_joints: Array
+    path_deviation_m: float
+    effort: float
+    margin_rad: float
+    displacement_margin_m: float | None
+    transfer: Transfer | None
+    trajectory: Trajectory | None
+    lower_bound: float | None
+
+
+def _claim(problem: Problem, approach: Approach) -> _Claim | None:
+    values = {entry.name: getattr(approach, entry.name) for entry in fields(_Claim)}
+    may_be_absent = MAY_BE_ABSENT if problem.options.timed else (*MAY_BE_ABSENT, *TIMED_FIELDS)
+    missing = any(value is None for name, value in values.items() if name not in may_be_absent)
+    return None if missing else _Claim(**values)
+
+
+def thinning_placement(
+    problem: Problem, target: Target, tool_side: int, thinning: Array
+) -> Placement:
+    """How a thinning posture stands to its target, recomputed from the posture, shape (joints,)."""
+    pose = forward_kinematics(problem.robot, problem.mounted_tool, np.asarray(thinning))
+    frame = approach_frame(target.position_m, target.branch_direction)
+    return placement(frame, np.asarray(target.position_m), tool_side, pose)
+
+
+def _wanted_pose(problem: Problem, target: Target, claim: _Claim) -> tuple[Array, Array]:
+    """Where the tool has to be at thinning, shape (3,), and its axes, shape (3, 3).
+
+    At the claimed approach angle; strike and swing are those of the thinning posture, cut to what
+    is allowed. Without relaxations that leaves the target itself and the unrelaxed axes.
+    """
+    options = problem.options
+    seen = thinning_placement(problem, target, claim.tool_side, claim.path_joints[-1])
+    frame = approach_frame(target.position_m, target.branch_direction)
+    swing = rotation(shortened(seen.swing_rad, options.tilt_tolerance_rad))
+    axes = swing @ frame.axes(claim.approach_angle_rad, claim.tool_side)
+    strike = min(max(seen.strike_m, 0.0), options.strike_zone_m)
+    return np.asarray(target.position_m) + strike * axes[:, 2], axes
+
+
+def _relaxation_residuals(
+    problem: Problem, target: Target, approach: Approach, claim: _Claim
+) -> Iterator[Residual]:
+    """Claims of how much of the relaxations is used: there where one is on, true, and only there.
+
+    That no more is used than allowed is in the residuals of the path.
+    """
+    used = thinning_placement(problem, target, claim.tool_side, claim.thinning_joints)
+    options = problem.options
+    for name, claimed, truth, on, allowed in (
+        ("strike_claim_m", approach.strike_m, used.strike_m, options.strike_zone_m > 0,
+         POSITION_ERROR_M),
+        ("tilt_claim_rad", approach.tilt_rad, used.tilt_rad, options.tilt_tolerance_rad > 0,
+         AXIS_ERROR_RAD),
+    ):  # fmt: skip
+        if claimed is None or not on:
+            yield Residual(name, float((claimed is not None) != on), 0.0)
+        else:
+            yield Residual(name, abs(claimed - truth), allowed)
+
+
+def _shape_residuals(problem: Problem, claim: _Claim) -> Iterator[Residual]:
+    n = len(problem.robot.joints)
+    wanted: dict[str, tuple[Array, tuple[int, ...]]] = {
+        "thinning_joints": (claim.thinning_joints, (n,)),
+        "standby_joints": (claim.standby_joints, (n,)),
+        "path_joints": (claim.path_joints, (problem.options.path_points, n)),
+    }
+    for name, (array, shape) in wanted.items():
+        wrong = np.shape(array) != shape or not np.isfinite(np.asarray(array)).all()
+        yield Residual(f"{name}_shape", float(wrong), 0.0)
+    if claim.trajectory is not None and claim.transfer is not None:
+        yield from shape_residuals(claim.trajectory, claim.transfer, n)
+    sides = (1, -1) if problem.options.symmetric_tool else (1,)
+    yield Residual("tool_side", float(claim.tool_side not in sides), 0.0)
+    yield Residual("approach_angle_turns", abs(claim.approach_angle_rad) / np.pi, 1.0)
+
+
+def _path_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
+    claimed = _claimed_path(problem, target, claim)
+    standby, thinning = np.asarray(claim.standby_joints), np.asarray(claim.thinning_joints)
+    yield from _single(path_residuals(problem, claimed, standby[None], thinning[None]))
+    yield from _branch_residuals(problem, claim, claimed)
+
+
+def _claimed_path(problem: Problem, target: Target, claim: _Claim) -> ClaimedPaths:
+    place, axes = _wanted_pose(problem, target, claim)
+    return ClaimedPaths(np.asarray(claim.path_joints)[None], place[None], axes[None])
+
+
+def _single(residuals: Iterator[Residuals]) -> Iterator[Residual]:
+    return (residual.of(0) for residual in residuals)
+
+
+def _branch_residuals(problem: Problem, claim: _Claim, claimed: ClaimedPaths) -> Iterator[Residual]:
+    """The branch claimed, at both ends; of an arm without branches, that its rows hang together."""
+    robot, tool, rows = problem.robot, problem.mounted_tool, np.asarray(claim.path_joints)
+    known = claim.branch is not None and 0 <= claim.branch < BRANCHES
+    if known != has_branches(robot, tool) or (claim.branch is not None and not known):
+        yield Residual("branch_exists", 1.0, 0.0)
+        return
+    if claim.branch is None:
+        yield Residual("branch_continuity", float(not same_side(robot, tool, rows)), 0.0)
+        return
+    yield from _single(branch_residuals(problem, claimed, np.array([claim.branch])))
+
+
+def _number_residuals(
+    problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
+) -> Iterator[Residual]:
+    thinning, references = np.asarray(claim.thinning_joints)[None], np.asarray(reference)[None]
+    efforts = np.array([claim.effort])
+    yield from _single(effort_residuals(problem, thinning, references, efforts))
+    if claim.lower_bound is not None:
+        effort = posture_effort(
+            claim.thinning_joints, reference, problem.joint_weights, problem.options.norm
+        )
+        above = (claim.lower_bound - effort) / max(1.0, effort)
+        yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
+    claimed = _claimed_path(problem, target, claim)
+    if claim.trajectory is None:
+        finer, deviation = _refined(problem, claimed, claim.branch)
+        claims = np.array([claim.path_deviation_m])
+        yield from _single(deviation_residuals(problem, np.array([deviation]), claims))
+    else:
+        finer = segment_rows(claim.trajectory, "cut_in", "dwell", "retreat")[1]
+    margins = np.array([cut_in_margin(problem, claim.path_joints, finer)])
+    yield from _single(margin_residuals(problem, claimed, margins, np.array([claim.margin_rad])))
+
+
+def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> Iterator[Residual]:
+    if claim.branch is None or claim.displacement_margin_m is None:
+        # Only an arm without a closed form has neither; `_branch_residuals` checks that it is one.
+        yield Residual("displacement_margin_absent", float(claim.branch is not None), 0.0)
+        return
+    margin = path_displacement_margin(
+        problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints
+    )
+    found, claims = np.array([margin]), np.array([claim.displacement_margin_m])
+    needed = np.array([needed_margin(target)])
+    yield from _single(displacement_residuals(found, claims, needed))
+
+
+def _refined(problem: Problem, claimed: ClaimedPaths, branch: int | None) -> tuple[Array, float]:
+    return refined_rows(
+        problem.robot,
+        problem.mounted_tool,
+        problem.options,
+        claimed.paths[0],
+        branch,
+        (claimed.places[0], claimed.axes[0, :, 2]),
+    )
+
+
+def _timing_residuals(
+    problem: Problem, target: Target, claim: _Claim, reference: Sequence[float]
+) -> Iterator[Residual]:
+    if claim.trajectory is None or claim.transfer is None:
+        return
+    place, axes = _wanted_pose(problem, target, claim)
+    motion = Motion(np.asarray(reference), claim.transfer, claim.trajectory)
+    yield from motion_residuals(
+        problem, motion, claim.path_joints, (place, axes[:, 2]), claim.path_deviation_m
+    )

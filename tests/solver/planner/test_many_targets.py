@@ -1,0 +1,161 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver import Options, Problem, Robot, Target, load_robot, verify
+from solver.comparison.targets import as_targets, drawn_at_edges
+from solver.planner import many_targets
+from solver.planner.many_targets import plan_many, plan_stops, plans_together
+from solver.planner.one_target import plan_target
+from solver.planner.staged import choose, next_reference
+from solver.problem.solution import PLANNED
+from solver.verification.many import judge_many
+from tests.solver.problems import random_targets
+
+SAME = 1e-9
+
+
+def edge_targets(robot: Robot, count: int) -> list[Target]:
+    tool = robot.tool(robot.default_tool)
+    assert tool is not None
+    return list(as_targets(*drawn_at_edges(robot, tool, 0.005, 91, count), range(count)))
+
+
+@pytest.mark.parametrize("norm", ["l1", "l2"])
+@pytest.mark.parametrize("symmetric", [False, True])
+@pytest.mark.parametrize("name", ["tabletop", "puma560"])
+def test_together_is_as_one_by_one(name: str, symmetric: bool, norm: str) -> None:
+    robot = load_robot(name)
+    options = Options(
+        method="ssas", order="independent", norm=norm, symmetric_tool=symmetric, include=("path",)
+    )
+    targets = [*random_targets(seed=90, count=40)]
+    targets += [
+        Target(f"e{t.id}", t.position_m, t.branch_direction) for t in edge_targets(robot, 30)
+    ]
+    problem = Problem(robot, targets, options=options)
+    assert plans_together(problem)
+    together = plan_many(problem, problem.targets)
+    planned = compared = 0
+    for target in problem.targets:
+        alone = plan_target(problem, target, problem.start)
+        planned += alone.status == PLANNED
+        found = together.get(target.id)
+        if found is None:
+            continue
+        assert verify(problem, found, problem.start).accepted
+        assert alone.status == PLANNED
+        assert found.effort == pytest.approx(alone.effort, abs=SAME)
+        # Where effort is flat the two may choose angles apart, of the same effort.
+        angles = found.approach_angle_rad, alone.approach_angle_rad
+        if (found.branch, found.tool_side, angles[0]) == pytest.approx(
+            (alone.branch, alone.tool_side, angles[1]), abs=1e-8
+        ):
+            compared += 1
+            assert found.path_deviation_m == pytest.approx(alone.path_deviation_m, abs=SAME)
+            assert found.margin_rad == pytest.approx(alone.margin_rad, abs=1e-6)
+            # Its search goes from row to row and may end at another one of nearly the same margin.
+            room = pytest.approx(alone.displacement_margin_m, rel=1e-3, abs=1e-6)
+            assert found.displacement_margin_m == room
+            assert found.path_joints is not None
+            assert alone.path_joints is not None
+            assert np.abs(found.path_joints - alone.path_joints).max() < 1e-6
+    # At the edges many have to be looked at between their rows.
+    assert len(together) > 0.7 * planned > 20
+    assert compared > 0.7 * len(together)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"method": "ncos"},
+        {"include": ("path", "transfer")},
+        {"include": ("path", "arcs")},
+        {"certify": True},
+        {"path_points": 10},
+    ],
+)
+def test_what_needs_more_goes_one_by_one(tabletop: Robot, changes: dict[str, object]) -> None:
+    options = {"method": "ssas", "order": "independent", "include": ("path",), **changes}
+    problem = Problem(tabletop, random_targets(seed=90, count=3), options=Options(**options))  # type: ignore[arg-type]
+    assert not plans_together(problem)
+
+
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_a_chain_together_is_as_one_by_one(tabletop: Robot, symmetric: bool) -> None:
+    options = Options(method="ssas", symmetric_tool=symmetric, include=("path",))
+    problem = Problem(tabletop, random_targets(seed=93, count=40), options=options)
+    choice = choose(problem)
+    stops = [choice.stops[id] for id in choice.order if id in choice.stops]
+    together = plan_stops(problem, stops, problem.start)
+    assert len(together) == len(stops) > 15
+    reference = problem.start
+    for stop in stops:
+        alone = plan_target(problem, stop.task.target, reference, stop)
+        found = together[stop.task.target.id]
+        assert verify(problem, found, reference).accepted
+        assert found.effort == pytest.approx(alone.effort, abs=SAME)
+        assert (found.branch, found.tool_side) == (alone.branch, alone.tool_side)
+        assert found.approach_angle_rad == alone.approach_angle_rad
+        reference = next_reference(problem, (found,), reference)
+
+
+def test_a_chain_ends_where_one_fails(tabletop: Robot) -> None:
+    options = Options(method="ssas", include=("path",))
+    problem = Problem(tabletop, random_targets(seed=93, count=40), options=options)
+    choice = choose(problem)
+    stops = [choice.stops[id] for id in choice.order if id in choice.stops]
+    wrong = replace(stops[5], angle_rad=stops[5].angle_rad + 0.01)
+    broken = [*stops[:5], wrong, *stops[6:]]
+    assert list(plan_stops(problem, broken, problem.start)) == [
+        stop.task.target.id for stop in stops[:5]
+    ]
+
+
+def test_rail_goes_one_by_one_and_uncertain_targets_are_left_out(tabletop: Robot) -> None:
+    options = Options(method="ssas", order="independent", include=("path",))
+    rail = load_robot("puma560_rail")
+    assert not plans_together(Problem(rail, random_targets(seed=90, count=3), options=options))
+    uncertain = [
+        Target(target.id, target.position_m, target.branch_direction, 0.001)
+        for target in random_targets(seed=90, count=20)
+    ]
+    assert plan_many(Problem(tabletop, uncertain, options=options), uncertain) == {}
+
+
+def test_nothing_that_is_wrong_is_called_planned(
+    tabletop: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options = Options(method="ssas", order="independent", include=("path",))
+    problem = Problem(tabletop, random_targets(seed=90, count=40), options=options)
+    seen = []
+
+    def note(problem, proposed, reports):  # type: ignore[no-untyped-def]
+        seen.append((proposed, reports))
+        return judge_many(problem, proposed, reports)
+
+    monkeypatch.setattr(many_targets, "judge_many", note)
+    assert plan_many(problem, problem.targets)
+    ((proposed, reports),) = seen
+    n = len(proposed.target_ids)
+    bent = proposed.paths.copy()
+    bent[:, 7, 2] += 1e-4
+    shifted = proposed.paths.copy()
+    shifted[..., 0] += 1e-4
+    holed = proposed.paths.copy()
+    holed[:, 3, 3] = np.nan
+    for wrong in (
+        replace(proposed, paths=bent),
+        replace(proposed, paths=shifted),
+        replace(proposed, paths=holed),
+        replace(proposed, angles_rad=proposed.angles_rad + 1e-4),
+        replace(proposed, tool_sides=-proposed.tool_sides),
+        replace(proposed, branches=(proposed.branches + 1) % 8),
+        replace(proposed, positions=proposed.positions + 1e-4),
+    ):
+        assert judge_many(problem, wrong, reports) == {}
+    beyond = replace(problem, options=replace(problem.options, limit_margin_rad=0.4))
+    kept = judge_many(beyond, proposed, reports)
+    assert len(kept) < n
+    assert all((approach.margin_rad or 0) >= 0.4 for approach in kept.values())
