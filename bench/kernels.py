@@ -5,6 +5,8 @@ against the solver's arcs and optima. One file, because Numba's cache notices a 
 a changed callee in another one.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

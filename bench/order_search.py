@@ -1,5 +1,7 @@
 """Reference searches on the nodes of a ladder graph: every order of few targets, long for many."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import itertools
 import math
 import time

@@ -6,6 +6,8 @@ Steps are damped least squares, dq = J^T (J J^T + damping I)^-1 e: the shortest 
 are redundant.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from functools import lru_cache
 from typing import NamedTuple

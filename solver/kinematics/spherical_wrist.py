@@ -25,6 +25,9 @@ d4 s3), its second theta1 kept and its singular case (r13 and r23 both zero) don
 Branch number = 4 shoulder + 2 elbow + wrist; 0 means x >= 0, +g and sin(q5) >= 0.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+# mypy: no-check-untyped-defs
+
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -6,6 +6,8 @@ move was accepted, the approaches beside it are chosen anew by the exact dynamic
 ladder graph.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

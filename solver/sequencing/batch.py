@@ -1,5 +1,7 @@
 """A batch for the kernels: every target's feasible arcs, and postures at angles on them."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """Kernels: how far targets are from each other, whatever the approaches."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import numpy as np
 
 from solver.compiled import kernel

@@ -5,6 +5,8 @@ of the way is known for every node. Partial orders are then opened best first, w
 the exact cost of what is left, so that the cheapest orders come out one after the other.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

@@ -6,6 +6,8 @@ nodes whose through-cost is among the lowest of their target are kept, and halve
 them. Divisions are nested, so no round's chain is dearer than the last one's.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

@@ -4,6 +4,8 @@ Postures are scaled (see `solver.sequencing.batch.Batch`), joints as rows, so th
 plain sum of |difference| or of squares, and the inner loops run over nodes and vectorise.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

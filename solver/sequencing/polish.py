@@ -8,6 +8,8 @@ falling to nothing; the minimum is taken over when the true effort is lower ther
 parabolas were wrong, the angles may move less far. They stay on their arcs throughout.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

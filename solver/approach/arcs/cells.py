@@ -6,6 +6,8 @@ stays below both lines that lead in. That holds where a joint does not swing, be
 straight wrist or the waist's axis, and does not enter the arm's reach, where it has a cusp.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import Final
 

@@ -1,5 +1,7 @@
 """Kernels: where in a cell constraints change sign, and where one has an extremum."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

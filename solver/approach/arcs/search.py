@@ -9,6 +9,8 @@ as long as each single constraint is resolved by the cells; where a joint swings
 (beside a straight wrist or the waist's axis) the cells are halved until it does not.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

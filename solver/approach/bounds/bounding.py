@@ -1,5 +1,7 @@
 """Kernels: branch and bound over the approach angle, for a proven bound on the least effort."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import heapq
 import math
 

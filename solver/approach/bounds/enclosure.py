@@ -5,6 +5,8 @@ Every enclosure also holds what that module computes in floating point: quantiti
 decides on are widened by its rounding errors.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 from solver.approach.bounds.intervals import (

@@ -11,6 +11,8 @@ within 1e-60 of the root of a square root, over which it adds nothing that a dou
 Source: R. E. Moore, Interval Analysis, 1966, chapters 4 and 6.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 from solver.compiled import kernel

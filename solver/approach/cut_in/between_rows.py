@@ -1,5 +1,7 @@
 """Kernel: whether a cut-in sampled at even rows may break a limit between two of them."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 from solver.compiled import kernel
 from solver.tolerances import BETWEEN_ROWS_CUSHION, BETWEEN_ROWS_REACH
 

@@ -1,5 +1,7 @@
 """Kernels: postures at a target with the approach angle free, from many starts."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """Kernel: the least effort over all arcs for many targets: one loop, no Python between targets."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

@@ -4,6 +4,8 @@ Cells of the approach angle that may hold feasible pieces are looked at in the o
 is at least in them; when none can be below the best found, the rest need no exact ends.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

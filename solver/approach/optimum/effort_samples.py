@@ -1,5 +1,7 @@
 """Kernels: joint values and effort at many approach angles of one branch."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

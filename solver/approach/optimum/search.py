@@ -6,6 +6,8 @@ others each joint that passes its reference value makes a kink of the l1 norm, f
 between kinks effort is smooth and its minimum is closed in on.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

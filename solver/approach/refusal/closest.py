@@ -9,6 +9,8 @@ A failure is a stage and a margin. The later stage is the closer one, then the l
     7 none: the approach is feasible
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

@@ -6,6 +6,8 @@ programme with an exact penalty (S l1 QP), BFGS and derivatives in closed form. 
 are multiplied by half the arm's length, so that all are lengths [m].
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """Kernels: one step of a sequential quadratic programme in four variables."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import numpy as np
 
 from solver.compiled import kernel

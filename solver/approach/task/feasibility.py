@@ -3,6 +3,8 @@
 Everything here depends on the approach angle alone; a `CutInTask` holds the rest.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from typing import NamedTuple
 

@@ -9,6 +9,8 @@ A kernel gets two or three arrays instead of a hundred numbers, and takes out wh
 its loops.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple

@@ -5,6 +5,8 @@ a nearest-point problem for each limit, solved by successive linearisation (the 
 Hasofer, Lind, Rackwitz and Fiessler, known from structural reliability).
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Kernels: the parts of a feasible arc that bear a displacement of the target."""
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np

@@ -4,6 +4,8 @@ The inverse of the Jacobian in closed form, from the wrist centre's decoupling: 
 the wrist centre, and joints 4 to 6 make up for how they turn the forearm.
 """
 
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
 import math
 
 import numpy as np
