@@ -2,10 +2,9 @@
 
 import http
 import logging
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from functools import partial
-from typing import Any
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Final
 
 import orjson
 from fastapi import FastAPI, Request, Response
@@ -14,19 +13,31 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
+from app.schemas.faults import MOST_FAULTS, structural_faults
 from app.schemas.problem_details import MEDIA_TYPE
+from app.services.exceptions import (
+    Conflict,
+    InvalidRequest,
+    NotFound,
+    ServiceError,
+    Unavailable,
+    invalid_request,
+)
 from app.store.failures import StoreBusy, StoreFailure, cause_of, failure_of
 from solver import Fault, InvalidProblem
 
 logger = logging.getLogger(__name__)
 
-MOST_FAULTS = 100
 STORE_RETRY_S = 5
-LONGEST_STEP = 100
+
+STATUSES: Final[Mapping[type[ServiceError], int]] = MappingProxyType(
+    {NotFound: 404, Conflict: 409, InvalidRequest: 422, Unavailable: 503}
+)
+"""What a service's refusal is in HTTP."""
 
 
 class ProblemError(Exception):
-    """An error that a client gets to see.
+    """An error of HTTP's own that a client gets to see; services raise `ServiceError`.
 
     Attributes:
         code: what it is, for programs; the end of the problem's `type`.
@@ -49,36 +60,16 @@ class ProblemError(Exception):
         self.faults = tuple(faults)
         self.retry_after_s = 1 if retry_after_s is None and status == 503 else retry_after_s
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        # It may be raised in a solver process.
-        rebuilt = partial(ProblemError, faults=self.faults, retry_after_s=self.retry_after_s)
-        return rebuilt, (self.status, self.code, self.detail)
-
-
-def invalid_request(faults: Sequence[Fault]) -> ProblemError:
-    """The 422 for these faults."""
-    return ProblemError(
-        422, "invalid_request", "The request makes no sense; see errors.", faults=faults
-    )
-
-
-@contextmanager
-def told_as_problem() -> Iterator[None]:
-    """Tell of a request that makes no sense as the ProblemError of its faults."""
-    try:
-        yield
-    except ValidationError as error:
-        raise invalid_request(structural_faults(error)) from None
-    except InvalidProblem as error:
-        raise invalid_request(error.faults) from None
-
-
-def structural_faults(error: ValidationError) -> tuple[Fault, ...]:
-    """The faults of a body that is not what its schema says, without the values."""
-    if error.error_count() > MOST_FAULTS:
-        return (Fault((), f"has {error.error_count()} fields that are not what they must be"),)
-    entries = error.errors(include_url=False, include_input=False, include_context=False)
-    return tuple(Fault(_clipped(entry["loc"]), entry["msg"]) for entry in entries)
+    @classmethod
+    def of(cls, error: ServiceError) -> "ProblemError":
+        """The problem that a service's refusal is."""
+        return cls(
+            STATUSES[type(error)],
+            error.code,
+            error.detail,
+            faults=error.faults,
+            retry_after_s=error.retry_after_s,
+        )
 
 
 def store_problem(error: SQLAlchemyError) -> ProblemError | None:
@@ -91,12 +82,6 @@ def store_problem(error: SQLAlchemyError) -> ProblemError | None:
         detail = "The database does not answer now; try again."
         return ProblemError(503, "store_unavailable", detail, retry_after_s=STORE_RETRY_S)
     return None
-
-
-def _clipped(path: Sequence[str | int]) -> tuple[str | int, ...]:
-    # An unknown field's name is the client's own text; a long one is pointed to by its parent.
-    long = (i for i, step in enumerate(path) if len(str(step)) > LONGEST_STEP)
-    return tuple(path[: next(long, len(path))])
 
 
 def problem_response(
@@ -149,6 +134,10 @@ def install_error_handlers(app: FastAPI) -> None:
             error.status, error.code, error.detail, faults=error.faults, headers=headers
         )
 
+    @app.exception_handler(ServiceError)
+    async def refused(request: Request, error: ServiceError) -> Response:
+        return await expected(request, ProblemError.of(error))
+
     @app.exception_handler(SQLAlchemyError)
     async def store(request: Request, error: SQLAlchemyError) -> Response:
         problem = store_problem(error)
@@ -160,14 +149,12 @@ def install_error_handlers(app: FastAPI) -> None:
         return await expected(request, problem)
 
     @app.exception_handler(InvalidProblem)
-    async def invalid(_: Request, error: InvalidProblem) -> Response:
-        problem = invalid_request(error.faults)
-        return problem_response(problem.status, problem.code, problem.detail, faults=problem.faults)
+    async def invalid(request: Request, error: InvalidProblem) -> Response:
+        return await refused(request, invalid_request(error.faults))
 
     @app.exception_handler(ValidationError)
-    async def malformed(_: Request, error: ValidationError) -> Response:
-        problem = invalid_request(structural_faults(error))
-        return problem_response(problem.status, problem.code, problem.detail, faults=problem.faults)
+    async def malformed(request: Request, error: ValidationError) -> Response:
+        return await refused(request, invalid_request(structural_faults(error)))
 
     @app.exception_handler(HTTPException)
     async def protocol(request: Request, error: HTTPException) -> Response:

@@ -1,5 +1,6 @@
 """Settings of the service: given, from the environment (prefix PRUNUS_), or from a TOML file."""
 
+import ipaddress
 import re
 import tomllib
 from collections.abc import Iterable
@@ -17,7 +18,6 @@ from pydantic_settings import (
 from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
-from app.guards.browser import is_loopback
 from app.observation.logs import LogOptions
 
 DATABASES: Final = ("sqlite", "postgresql", "postgres")
@@ -196,3 +196,11 @@ def shown_settings(settings: Settings) -> dict[str, Any]:
         shown = url.update_query_dict(hidden) if hidden else url
         values["database_url"] = shown.render_as_string(hide_password=True)
     return values
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine reaches a service that listens there."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host.lower() == "localhost"

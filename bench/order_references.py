@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from solver.approach.arcs.arcs import Arc, sample_task
-from solver.approach.optimum.batch import packed_problem
+from solver.approach.arcs.arcs import sample_task
+from solver.approach.optimum.on_arcs import best_on_arcs
+from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
-from solver.methods.semi_analytic import best_on_arcs
 from solver.problem.problem import Problem
+from solver.problem.solution import Arc
 from solver.sequencing.gather import gather
 from solver.sequencing.ladder_graph import refined_ladder
 

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from app.schemas.demo_request import demo_request
 from solver import Options, Problem, Target, load_robot
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.task.frame import approach_frames
 from solver.comparison.targets import drawn_at_edges, drawn_in_box
 

@@ -10,8 +10,7 @@
 Metres, radians and seconds in the robot's base frame throughout.
 """
 
-from solver.approach.arcs.arcs import Arc
-from solver.approach.optimum.batch import feasible_arcs
+from solver.approach.arcs.of_problem import feasible_arcs
 from solver.exceptions import (
     Fault,
     InvalidProblem,
@@ -21,9 +20,11 @@ from solver.exceptions import (
     UnsupportedKinematics,
 )
 from solver.planner.solve import solve
-from solver.problem.problem import Options, Problem, Target
+from solver.problem.options import Options
+from solver.problem.problem import Problem
 from solver.problem.solution import (
     Approach,
+    Arc,
     Nearest,
     Plan,
     Reason,
@@ -32,6 +33,7 @@ from solver.problem.solution import (
     Trajectory,
     Transfer,
 )
+from solver.problem.targets import Target
 from solver.problem.thinning import (
     Blossom,
     BlossomBranch,

@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from typing import Final
 
-from solver.problem.problem import Target
+from solver.problem.targets import Target
 from solver.robots.model import Robot
 
 

@@ -101,7 +101,7 @@ def plan(
     from pydantic import ValidationError
     from rich.console import Console
 
-    from app.errors import structural_faults
+    from app.schemas.faults import structural_faults
     from app.services.plans.planning import plan_request
     from solver import InvalidProblem, InvalidRobot
 

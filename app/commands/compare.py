@@ -82,7 +82,7 @@ def compare(
 def _prepared(scenario: str, methods: str | None) -> "Contest":
     from pydantic import ValidationError
 
-    from app.errors import structural_faults
+    from app.schemas.faults import structural_faults
     from app.services.comparisons.running import prepare
     from solver.exceptions import InvalidProblem, SolverError
 

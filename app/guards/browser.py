@@ -4,7 +4,6 @@ A browser says in `Origin` which page a request comes from; a worker or curl sen
 that has its own name resolved to loopback (DNS rebinding) still has that name in `Host`.
 """
 
-import ipaddress
 from collections.abc import Sequence
 from urllib.parse import urlsplit
 
@@ -12,6 +11,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.errors import problem_response
+from app.settings import is_loopback
 
 DEFAULT_PORTS = {"http": 80, "https": 443}
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
@@ -59,14 +59,6 @@ class BrowserGuardMiddleware:
             return
         response = problem_response(403, code, detail, headers={"Connection": "close"})
         await response(scope, receive, send)
-
-
-def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches a service that listens there."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host.lower() == "localhost"
 
 
 def _is_same(origin: str, host: str) -> bool:

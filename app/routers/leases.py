@@ -10,9 +10,15 @@ from starlette.concurrency import run_in_threadpool
 from app.errors import ProblemError
 from app.routers.common import body_of, json_body, problem_answers
 from app.routers.idempotency_key import CREATED_HEADERS, REPLAYED, new_key, with_key
-from app.schemas.leases import LeaseAnswer, LeaseRenewal, LeaseRequest, LeaseStateAnswer
+from app.schemas.leases import (
+    USUAL_LEASE_S,
+    LeaseAnswer,
+    LeaseRenewal,
+    LeaseRequest,
+    LeaseStateAnswer,
+)
 from app.services.robots.execution_checks import robot_instance
-from app.services.robots.leases import USUAL_LEASE_S, Lease, LeaseService
+from app.services.robots.leases import Lease, LeaseService
 
 AS_LONG_AS_IT_LASTS: Final = (
     "As long as the lease lasts, the same key with the same body gets it again, as it stands then, "

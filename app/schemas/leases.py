@@ -1,9 +1,16 @@
-"""Bodies of leases."""
+"""Bodies of leases, and how long one may last."""
+
+from typing import Final
 
 from pydantic import MISSING, BaseModel, Field
 
 from app.schemas.strict_body import StrictBody
-from app.services.robots.leases import LEAST_LEASE_S, LONGEST_HOLDER, MOST_LEASE_S, USUAL_LEASE_S
+
+LEAST_LEASE_S: Final = 1.0
+MOST_LEASE_S: Final = 300.0
+"""A client that is gone blocks a robot no longer than this."""
+USUAL_LEASE_S: Final = 30.0
+LONGEST_HOLDER: Final = 100
 
 
 class LeaseRequest(StrictBody):

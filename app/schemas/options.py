@@ -60,7 +60,7 @@ def _late(
 
 
 def _asked(name: str) -> dict[str, Any]:
-    from solver.problem.problem import (
+    from solver.problem.options import (
         FULL_ANSWER,
         FULL_ANSWER_TARGETS,
         MOST_WEIGHT,
@@ -103,7 +103,7 @@ def known_values() -> Mapping[str, Sequence[str]]:
     from solver.methods.nlp.backends import BACKENDS
     from solver.methods.nlp.quadratic import QP_SOLVERS
     from solver.methods.registry import METHODS
-    from solver.problem.problem import INCLUDES, NORMS, ORDERS, WEIGHTS
+    from solver.problem.options import INCLUDES, NORMS, ORDERS, WEIGHTS
 
     return {
         "method": tuple(METHODS),

@@ -11,14 +11,13 @@ import uvicorn
 from alembic.util import CommandError
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.guards.browser import is_loopback
 from app.guards.traffic import DRAIN_POLL_S, Traffic
 from app.observation.logs import configure_logs
 from app.server.application import create_app
 from app.server.connection import Patience, impatient_protocol
 from app.server.processes import READY_LINE
 from app.services.solving.long_lived import keep_for_good
-from app.settings import Settings
+from app.settings import Settings, is_loopback
 from app.store import TokenStore, open_engine
 from app.store.failures import cause_of
 from app.store.single_service import DatabaseInUse, Hold, hold_database

@@ -5,17 +5,17 @@ from collections.abc import Awaitable, Callable
 from typing import TypeVar
 from weakref import WeakValueDictionary
 
-from app.errors import ProblemError
+from app.services.exceptions import InvalidRequest, Unavailable
 from app.services.store_calls import store_call
 from app.store import IdempotencyStore, KeyedAnswer, KeyTaken, NewKey
 
 Created = TypeVar("Created")
 
 
-def key_reused() -> ProblemError:
-    """The 422 for a key that stands for another body."""
+def key_reused() -> InvalidRequest:
+    """The refusal of a key that stands for another body."""
     detail = "This Idempotency-Key was used for another body; take a new key for a new request."
-    return ProblemError(422, "idempotency_key_reused", detail)
+    return InvalidRequest("idempotency_key_reused", detail)
 
 
 class IdempotencyService:
@@ -37,14 +37,14 @@ class IdempotencyService:
         against the key that is stored first.
 
         Raises:
-            ProblemError: 422, the key stands for another body; whatever `create` raises.
+            InvalidRequest: the key stands for another body; whatever `create` raises.
         """
         lock = self._locks.setdefault((key.scope, key.key), asyncio.Lock())
         try:
             await lock.acquire()
         except asyncio.CancelledError:
             # Only the server's shutdown cancels a request; its client still gets an answer.
-            raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+            raise Unavailable("solver_unavailable", "The service is shutting down.") from None
         try:
             stored = await self._find(key)
             if stored is not None:

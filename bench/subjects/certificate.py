@@ -6,8 +6,8 @@ from functools import partial
 from bench.measure import Row, row, scaled, times_of
 from bench.targets import random_set
 from solver.approach.bounds.certificate import certify_task
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
-from solver.methods.semi_analytic import best_on_arcs
 
 WANTED_GAP = 1e-6
 

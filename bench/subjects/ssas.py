@@ -6,7 +6,8 @@ from bench.measure import Row, alternating, failed, ratios, row, scaled
 from bench.peers import installed_peers, least_efforts
 from bench.targets import random_set
 from solver import solve
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
 
 WANTED_US = 60.0
 WANTED_RATIO = 20.0

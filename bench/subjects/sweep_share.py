@@ -9,7 +9,8 @@ from bench.measure import Row, row
 from bench.reference import sweep_targets
 from bench.targets import hard_set, random_set, together
 from solver import solve
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
 
 WANTED_EXCESS = 1e-6
 ANGLES = 65_536

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from solver.kinematics.forward import forward_kinematics
-from solver.problem.problem import Target
+from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 
 BOX: Final = (0.05, -0.3, 0.05), (0.38, 0.3, 0.5)

@@ -15,7 +15,8 @@ import numpy as np
 from scipy.special import stdtrit
 
 from solver.exceptions import Fault, InvalidProblem
-from solver.frames.transforms import RigidTransform, position_faults, transform_from_rotation
+from solver.frames.checks import position_faults
+from solver.frames.transforms import RigidTransform, transform_from_rotation
 from solver.robots.model import Array
 
 LEAST_PAIRS: Final = 3

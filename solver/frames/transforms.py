@@ -1,4 +1,4 @@
-"""Frames other than the robot's base: where they stand, checked, and targets brought to the base.
+"""Frames other than the robot's base: where they stand, checked.
 
 A pose is written as a camera calibration gives it, `base_from_frame`: the frame's origin in the
 base, and the rotation that turns directions of the frame into directions of the base. So
@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from solver.exceptions import Fault, InvalidProblem
-from solver.problem.problem import Target
+from solver.frames.checks import position_faults, vector_fault
 from solver.robots.model import Array
 from solver.tolerances import SHORTEST_DIRECTION
 
@@ -29,10 +29,6 @@ nearest rotation is taken, which differs by less than 1e-3 rad: half a millimetr
 
 FEW_DIGITS: Final = 1e-6
 """Change of a number, when a rotation is made exact, from which that is worth a warning."""
-
-FURTHEST_M: Final = 1e7
-"""Coordinates beyond are refused [m]. Northings of maps end there, where doubles still tell points
-apart that are 2 nm from each other."""
 
 SUSPICIOUS_M: Final = 100.0
 """A frame further away was probably not sent in metres [m]; maps are, so it is only a warning."""
@@ -185,49 +181,3 @@ def _about(position_m: Sequence[float], given: Array, kept: Array) -> tuple[Fram
         detail = f"the frame is more than {SUSPICIOUS_M:g} m away; positions are metres"
         found.append(FrameWarning("far", detail))
     return tuple(found)
-
-
-def position_faults(position_m: Sequence[float], path: tuple[str | int, ...]) -> Sequence[Fault]:
-    """What keeps three numbers from being a place in space [m]."""
-    if detail := vector_fault(position_m, 3):
-        return (Fault(path, detail),)
-    if max(map(abs, position_m)) > FURTHEST_M:
-        return (Fault(path, f"more than {FURTHEST_M:g} m away; positions are metres"),)
-    return ()
-
-
-def vector_fault(values: Sequence[float], length: int) -> str | None:
-    """What keeps a sequence from being a vector of that length."""
-    if len(values) != length:
-        return f"needs {length} numbers, has {len(values)}"
-    if not all(math.isfinite(value) for value in values):
-        return "has a value that is not finite"
-    return None
-
-
-def targets_in_base(
-    targets: Sequence[Target], base_from_frame: RigidTransform
-) -> tuple[Target, ...]:
-    """Targets of a frame in the robot's base frame; branch directions come out as unit vectors.
-
-    Uncertainties are the same in every direction and stay. What is no vector, has no length or is
-    too far away for any frame stays as it is, for `Problem` to refuse it where it was sent.
-    """
-    placed = [k for k, target in enumerate(targets) if _is_place(target)]
-    if not placed:
-        return tuple(targets)
-    positions = base_from_frame.points(np.array([targets[k].position_m for k in placed]))
-    directions = np.array([targets[k].branch_direction for k in placed], dtype=float)
-    lengths = [math.hypot(*targets[k].branch_direction) for k in placed]
-    directions = base_from_frame.directions(directions / np.array(lengths)[:, None])
-    moved = list(targets)
-    for k, position, direction in zip(placed, positions.tolist(), directions.tolist(), strict=True):
-        old = targets[k]
-        moved[k] = Target(old.id, tuple(position), tuple(direction), old.position_std_m)
-    return tuple(moved)
-
-
-def _is_place(target: Target) -> bool:
-    if position_faults(target.position_m, ()) or vector_fault(target.branch_direction, 3):
-        return False
-    return SHORTEST_DIRECTION < math.hypot(*target.branch_direction) < math.inf

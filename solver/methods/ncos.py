@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.optimum.on_arcs import ArcOptimum, best_on_arcs
 from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
@@ -23,7 +24,6 @@ from solver.methods.nlp.relaxed import solve_relaxed
 from solver.methods.nlp.starts import corners, nearest_starts, start_at
 from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
-from solver.methods.semi_analytic import ArcOptimum, best_on_arcs
 from solver.problem.effort import posture_effort
 from solver.problem.solution import Reason
 from solver.robots.model import Array

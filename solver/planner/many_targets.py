@@ -11,18 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.approach.cut_in.between_rows import many_may_leave_between
-from solver.approach.optimum.batch import (
-    NO_BRANCH,
-    Optima,
-    chosen_paths,
-    closed_form_optima,
-    finer_paths,
-    packed_targets,
-)
+from solver.approach.optimum.batch import Optima, chosen_paths, closed_form_optima, finer_paths
+from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.task.frame import signed_angle
+from solver.approach.task.packing import packed_targets
 from solver.kinematics.families import has_closed_form, rail_of
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
 from solver.problem.solution import Approach, SolverReport
+from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.sequencing.sequence import Stop
 from solver.tolerances import BATCH_PART, LEAST_REFINED_ROWS

@@ -12,8 +12,9 @@ from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.any_arm import Solve
 from solver.methods.registry import METHODS
 from solver.planner.proposal import propose
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
 from solver.problem.solution import INFEASIBLE, Approach, Reason, SolverReport
+from solver.problem.targets import Target
 from solver.sequencing.programmed import programmed
 from solver.sequencing.sequence import Stop
 from solver.tolerances import EXCHANGE_ROUNDS

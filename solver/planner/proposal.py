@@ -9,8 +9,9 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.motion.timing import TimedRows, time_joint_line
 from solver.problem.effort import posture_effort
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
 from solver.problem.solution import Approach, Segment, SolverReport, Trajectory, Transfer
+from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.tolerances import TRAJECTORY_STEP_S
 from solver.verification.motion import cut_in_margin

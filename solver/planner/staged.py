@@ -9,15 +9,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from solver.approach.arcs.arcs import Arc
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.kinematics.families import has_closed_form
 from solver.methods.registry import METHODS
 from solver.planner.many_targets import plan_many, plan_stops, plans_together
 from solver.planner.one_target import plan_target
-from solver.problem.problem import Problem, Target
-from solver.problem.solution import PLANNED, Approach
+from solver.problem.problem import Problem
+from solver.problem.solution import PLANNED, Approach, Arc
+from solver.problem.targets import Target
 from solver.sequencing.sequence import Stop, sequence
 
 

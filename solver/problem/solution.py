@@ -5,13 +5,10 @@ Rows of joint vectors are arrays of shape (rows, joints) [rad]; times in s, leng
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from solver.problem.problem import Problem
 from solver.robots.model import Array
-
-if TYPE_CHECKING:
-    from solver.approach.arcs.arcs import Arc
 
 PLANNED: Final = "planned"
 INFEASIBLE: Final = "infeasible"
@@ -24,6 +21,28 @@ REASON_CODES: Final = (
     "method_not_applicable",
     "solver_failed",
 )
+
+
+@dataclass(frozen=True)
+class Arc:
+    """Approach angles, lower to upper [rad], at which one branch is feasible in the whole cut-in.
+
+    Attributes:
+        tool_side: 1 or -1.
+        branch: 0 to 7.
+        lower_rad: in [-pi, pi].
+        upper_rad: beyond pi where the arc crosses the half turn.
+        lower_limit: what ends the arc there: a joint's name, "reach", "wrist_jump", or the
+            target's "uncertainty"; None where the arc is the whole turn.
+        upper_limit: the same at the upper end.
+    """
+
+    tool_side: int
+    branch: int
+    lower_rad: float
+    upper_rad: float
+    lower_limit: str | None = None
+    upper_limit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -165,7 +184,7 @@ class Approach:
     displacement_margin_m: float | None = None
     transfer: Transfer | None = None
     trajectory: Trajectory | None = None
-    arcs: "tuple[Arc, ...] | None" = None
+    arcs: tuple[Arc, ...] | None = None
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solver.approach.arcs.arcs import Arc
 from solver.approach.task.packed import LOWER, UPPER, jump_cosines
 from solver.problem.problem import Problem
+from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch
 

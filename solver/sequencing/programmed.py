@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.optimum.on_arcs import ArcOptimum
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
 from solver.methods.ncos import improved
-from solver.methods.semi_analytic import ArcOptimum
 from solver.sequencing.sequence import Stop
 
 

@@ -5,14 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.approach.arcs.arcs import Arc, task_arcs
+from solver.approach.arcs.arcs import task_arcs
+from solver.approach.arcs.of_problem import arcs_of_packed
 from solver.approach.cut_in.cut_in import broken_limit
-from solver.approach.optimum.batch import arcs_of_packed, chosen_paths, packed_problem
+from solver.approach.optimum.batch import chosen_paths
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
+from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
+from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch, Indices
 from solver.sequencing.gather import gather

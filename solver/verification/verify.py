@@ -19,7 +19,7 @@ from solver.kinematics.families import has_branches
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem.effort import posture_effort
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
 from solver.problem.solution import (
     INFEASIBLE,
     PLANNED,
@@ -29,6 +29,7 @@ from solver.problem.solution import (
     Trajectory,
     Transfer,
 )
+from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.tolerances import (
     AXIS_ERROR_RAD,

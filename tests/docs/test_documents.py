@@ -12,6 +12,7 @@ import pytest
 
 from app.commands.demo import MOST_ERROR_M
 from app.commands.plan_table import HEADINGS, MEASURED_HEADINGS, plan_rows
+from app.errors import STATUSES
 from app.guards.access import REVOKED
 from app.routers.link import SERVICE_FAULT
 from app.schemas.demo_request import demo_request
@@ -27,7 +28,7 @@ from hardware import exceptions
 from solver import Options, solve
 from solver.comparison.registry import SCENARIOS
 from solver.methods.registry import METHODS
-from solver.problem.problem import RANGES
+from solver.problem.options import RANGES
 from solver.problem.solution import REASON_CODES
 
 ROOT = Path(__file__).parents[2]
@@ -121,7 +122,13 @@ def test_http_errors_are_documented() -> None:
             r'(?:ProblemError|problem_response)\(\s*(\d{3}),\s*"(\w+)"', file.read_text()
         )
     }
-    assert len(raised) >= 10
+    raised |= {
+        (str(status), code)
+        for refusal, status in STATUSES.items()
+        for file in (ROOT / "app").rglob("*.py")
+        for code in re.findall(rf'\b{refusal.__name__}\(\s*"(\w+)"', file.read_text())
+    }
+    assert len(raised) >= 20
     assert raised <= documented
 
 

@@ -13,9 +13,14 @@ import orjson
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 
-from app.errors import ProblemError, invalid_request
 from app.reports.html import waiting_page
-from app.services.comparisons.running import ComparisonOrder, prepare, read_progress
+from app.services.comparisons.running import (
+    ComparisonOrder,
+    compare_to_bytes,
+    prepare,
+    read_progress,
+)
+from app.services.exceptions import NotFound, Unavailable, invalid_request
 from app.services.solving.process import SolverLost
 from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
@@ -81,14 +86,13 @@ class ComparisonService:
 
         Raises:
             KeyTaken: something was created under the key before.
-            ProblemError: 422, there is no such scenario or method; 503, too many are waiting.
+            InvalidRequest: there is no such scenario or method.
+            Unavailable: too many are waiting.
         """
         if faults := await run_in_threadpool(_faults, scenario, methods, repeats):
             raise invalid_request(faults)
         if await store_call(self._store.count_active) >= MOST_ACTIVE:
-            raise ProblemError(
-                503, "comparisons_full", f"{MOST_ACTIVE} comparisons are waiting already."
-            )
+            raise Unavailable("comparisons_full", f"{MOST_ACTIVE} comparisons are waiting already.")
         comparison_id = uuid.uuid4().hex
         document: Document = {"id": comparison_id, "scenario": scenario}
         if methods is not None:
@@ -115,7 +119,7 @@ class ComparisonService:
             document = work.document | {"status": RUNNING, "started_at": timestamp()}
             await self._surely(lambda: self._save(document))
             try:
-                result, page = await self._solving.compare(work.order)
+                result, page = await self._solving.run(compare_to_bytes, work.order)
             except SolverLost:
                 ending = {"status": FAILED, "detail": "the solver was lost over it"}
                 await self._surely(lambda: self._end(document, ending))
@@ -141,11 +145,11 @@ class ComparisonService:
         """The answer for a comparison, with its progress while it is running.
 
         Raises:
-            ProblemError: 404, there is none of this id.
+            NotFound: there is none of this id.
         """
         text = await store_call(self._store.document, comparison_id)
         if text is None:
-            raise ProblemError(404, "not_found", "There is no comparison of this id.")
+            raise NotFound("not_found", "There is no comparison of this id.")
         document: Document = orjson.loads(text)
         if document["status"] == RUNNING:
             told = await run_in_threadpool(read_progress, self._progress_file(comparison_id))
@@ -157,7 +161,7 @@ class ComparisonService:
         """The comparison as an HTML page, whatever its state.
 
         Raises:
-            ProblemError: 404, there is none of this id.
+            NotFound: there is none of this id.
         """
         page = await store_call(self._store.page, comparison_id)
         if page is not None:

@@ -3,15 +3,12 @@
 import json
 import logging
 from dataclasses import dataclass
-from typing import Any
-
-import orjson
 
 from app.observation.measures import PlanFigures
 from app.services.plans import parts
-from app.services.plans.wire import parse_stored_request, plan_to_wire, problem_from_wire
+from app.services.plans.wire import parse_stored_request, problem_from_wire
 from app.store.jobs import NewPart
-from solver import Plan, Problem
+from solver import Problem
 from solver.kinematics.families import has_closed_form
 from solver.planner.staged import (
     Choice,
@@ -90,13 +87,6 @@ def part_targets(problem: Problem) -> int:
 def plan_head(job_id: str, totals: parts.Totals) -> str:
     """The answer of a job's plan without its approaches, JSON."""
     return parts.head_of(_job(job_id).problem, job_id, totals).decode()
-
-
-def resolved_request(request: str, problem: Problem) -> str:
-    """A stored request with every default filled in, JSON: the same for ever after."""
-    head = plan_to_wire(Plan(problem, (), 0.0), "")
-    resolved: dict[str, Any] = {name: head[name] for name in ("tool", "start_joints", "options")}
-    return orjson.dumps({**orjson.loads(request), **resolved}).decode()
 
 
 def _job(job_id: str) -> _Loaded:

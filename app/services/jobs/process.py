@@ -10,7 +10,7 @@ from app.observation.measures import PlanFigures
 from app.services.jobs.parts import choose_for_job, load_job, plan_head, solve_part
 from app.services.plans.parts import Totals
 from app.services.solving.process import SolverLost, SolverProcess
-from app.services.solving.service import prepare
+from app.services.solving.work import prepare
 from app.store import JobRow, JobWork, NewPart
 
 Result = TypeVar("Result")

@@ -14,9 +14,9 @@ from typing import Final
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.errors import ProblemError
 from app.observation.logs import LogOptions
 from app.observation.measures import Measures
+from app.services.exceptions import Conflict, NotFound, Unavailable
 from app.services.jobs.process import JobProcess
 from app.services.plans.batch_reading import JobOrder
 from app.services.solving.pool import RESTART_S
@@ -106,12 +106,11 @@ class JobService:
             key: that it was asked for under, if any.
 
         Raises:
-            ProblemError: 503, too many are waiting.
+            Unavailable: too many are waiting.
             KeyTaken: something was created under the key before.
         """
         if len(self._active) >= self._most_waiting:
-            raise ProblemError(
-                503,
+            raise Unavailable(
                 "jobs_full",
                 f"{self._most_waiting} jobs are waiting or running.",
                 retry_after_s=FULL_RETRY_S,
@@ -142,11 +141,11 @@ class JobService:
         """The job as it stands.
 
         Raises:
-            ProblemError: 404, there is none of this id.
+            NotFound: there is none of this id.
         """
         job = await store_call(self._store.job, job_id)
         if job is None:
-            raise ProblemError(404, "not_found", "There is no job of this id.")
+            raise NotFound("not_found", "There is no job of this id.")
         return job
 
     async def newest(self) -> list[JobRow]:
@@ -157,14 +156,15 @@ class JobService:
         """End a job at once, whatever it does; what is solved stays.
 
         Raises:
-            ProblemError: 404, there is none of this id; 409, it has ended.
+            NotFound: there is none of this id.
+            Conflict: it has ended.
         """
         job = await self.job(job_id)
         try:
             await store_call(self._store.end, job_id, CANCELED)
         except JobEnded:
             detail = f"The job is {(await self.job(job_id)).status}; this needs an active one."
-            raise ProblemError(409, "wrong_state", detail) from None
+            raise Conflict("wrong_state", detail) from None
         active = self._active.pop(job_id, None)
         if active is not None:
             active.canceled = True
@@ -180,7 +180,7 @@ class JobService:
         It also ends when the service does.
 
         Raises:
-            ProblemError: 404, there is none of this id.
+            NotFound: there is none of this id.
         """
         while True:
             active = self._active.get(job_id)

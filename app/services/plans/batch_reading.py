@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
-from app.errors import told_as_problem
-from app.services.jobs.parts import resolved_request
+import orjson
+
+from app.services.exceptions import told_as_invalid
 from app.services.plans.sent_frames import stored_request
-from app.services.plans.wire import parse_request, problem_from_wire
-from solver import Fault, InvalidProblem, Problem
+from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
+from solver import Fault, InvalidProblem, Plan, Problem
 from solver.frames.transforms import RigidTransform
 
 LARGE_BODY_BYTES = 256 * 1024
@@ -60,9 +62,9 @@ def read_batch(
         find_frame: the registered frames.
 
     Raises:
-        ProblemError: 422, the request makes no sense.
+        InvalidRequest: the request makes no sense.
     """
-    with told_as_problem():
+    with told_as_invalid():
         request = parse_request(body)
         if len(request.targets) > limits.at_all:
             raise InvalidProblem((Fault(("targets",), f"more than {limits.at_all} targets"),))
@@ -71,3 +73,10 @@ def read_batch(
     if as_job or len(problem.targets) > limits.at_once:
         return JobOrder(problem.robot.name, len(problem.targets), resolved_request(kept, problem))
     return PlanOrder(problem, kept)
+
+
+def resolved_request(request: str, problem: Problem) -> str:
+    """A stored request with every default filled in, JSON: the same for ever after."""
+    head = plan_to_wire(Plan(problem, (), 0.0), "")
+    resolved: dict[str, Any] = {name: head[name] for name in ("tool", "start_joints", "options")}
+    return orjson.dumps({**orjson.loads(request), **resolved}).decode()

@@ -9,8 +9,8 @@ from typing import Any, Final
 import orjson
 from pydantic import MISSING
 
-from app.errors import ProblemError, invalid_request
 from app.schemas.frames import FrameRegistrationRequest, FrameRequest, PointPairBody
+from app.services.exceptions import Conflict, InvalidRequest, NotFound, invalid_request
 from app.services.plans.sent_frames import BASE_FRAME
 from app.services.plans.wire import present
 from app.store import FramesFull, FrameStore, NewKey, StoredFrame
@@ -54,7 +54,8 @@ class FrameService:
 
         Raises:
             InvalidProblem: a pose or pairs that make no sense.
-            ProblemError: 422, the name is none; 409, there are too many frames.
+            InvalidRequest: the name is none.
+            Conflict: there are too many frames.
         """
         _check_name(name)
         pose, warnings = _pose(request.model_dump())
@@ -72,7 +73,8 @@ class FrameService:
         Raises:
             InvalidProblem: pairs from which no pose follows; no robot of that name.
             KeyTaken: something was created under the key before.
-            ProblemError: 422, the name is none; 409, there are too many frames.
+            InvalidRequest: the name is none.
+            Conflict: there are too many frames.
         """
         _check_name(name)
         agreement = register(_pairs(request.pairs), reach_m=_reach_m(request.robot))
@@ -83,7 +85,7 @@ class FrameService:
         """A frame's JSON.
 
         Raises:
-            ProblemError: 404, there is none.
+            NotFound: there is none.
         """
         document = self._find(name)
         if document is None:
@@ -101,7 +103,7 @@ class FrameService:
         """Remove a frame. What was planned in it stays planned.
 
         Raises:
-            ProblemError: 404, there is none.
+            NotFound: there is none.
         """
         if not NAME.fullmatch(name) or not self._store.remove(name):
             raise _unknown()
@@ -129,7 +131,7 @@ class FrameService:
             )
         except FramesFull:
             detail = "There are as many frames as are kept; delete some."
-            raise ProblemError(409, "frames_full", detail) from None
+            raise Conflict("frames_full", detail) from None
 
 
 def location_of(name: str) -> str:
@@ -139,19 +141,18 @@ def location_of(name: str) -> str:
 
 def _check_name(name: str) -> None:
     if not NAME.fullmatch(name):
-        raise ProblemError(
-            422,
+        raise InvalidRequest(
             "invalid_frame_name",
             "A frame's name is 1 to 100 characters of A-Z, a-z, 0-9, _, - and ., no dot first.",
         )
     if name == BASE_FRAME:
-        raise ProblemError(
-            422, "invalid_frame_name", f"{BASE_FRAME!r} is the robot's own frame and stays so."
+        raise InvalidRequest(
+            "invalid_frame_name", f"{BASE_FRAME!r} is the robot's own frame and stays so."
         )
 
 
-def _unknown() -> ProblemError:
-    return ProblemError(404, "not_found", "There is no frame of this name.")
+def _unknown() -> NotFound:
+    return NotFound("not_found", "There is no frame of this name.")
 
 
 def _pose(given: dict[str, Any]) -> tuple[RigidTransform, tuple[FrameWarning, ...]]:

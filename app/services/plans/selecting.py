@@ -2,8 +2,8 @@
 
 import orjson
 
-from app.errors import told_as_problem
 from app.schemas.thinning_selections import ThinningSelectionRequest
+from app.services.exceptions import told_as_invalid
 from solver import Blossom, BlossomBranch, select_blossoms
 
 
@@ -11,9 +11,9 @@ def selection_to_json(body: bytes) -> bytes:
     """The answer's body for a body of POST /v1/thinning-selections.
 
     Raises:
-        ProblemError: 422, the request makes no sense; no fault repeats what was sent.
+        InvalidRequest: the request makes no sense; no fault repeats what was sent.
     """
-    with told_as_problem():
+    with told_as_invalid():
         request = ThinningSelectionRequest.from_json(body)
         selection = select_blossoms(
             [

@@ -32,7 +32,8 @@ from solver import (
     UnknownRobot,
 )
 from solver.comparison.strawberry.mechanism import NAME as STRAWBERRY
-from solver.frames.transforms import NamedFrame, targets_in_base
+from solver.frames.transforms import NamedFrame
+from solver.problem.targets import targets_in_base
 
 
 def parse_request(body: bytes) -> PlanRequest:

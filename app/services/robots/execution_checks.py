@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import orjson
 
-from app.errors import ProblemError, invalid_request
+from app.services.exceptions import Conflict, NotFound, Unavailable, invalid_request
 from app.services.plans.plan_reading import whole_answer
 from app.services.robots.execution_record import Execution, targets_of_plan
 from app.services.robots.links import Link
@@ -42,7 +42,8 @@ async def ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPla
     """The plan that a robot is to execute.
 
     Raises:
-        ProblemError: no such plan or robot, or no target of the plan can be approached.
+        NotFound: no such plan or robot.
+        InvalidRequest: no target of the plan can be approached.
     """
     return await store_call(_ordered_plan, plans, plan_id, robot)
 
@@ -50,7 +51,7 @@ async def ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPla
 def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:
     stored = plans.plan(plan_id)
     if stored is None:
-        raise ProblemError(404, "not_found", "There is no plan of this id.")
+        raise NotFound("not_found", "There is no plan of this id.")
     instance = robot_instance(robot)
     text = whole_answer(plans, plan_id, stored)
     answer = orjson.loads(text)
@@ -69,11 +70,11 @@ def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:
 
 
 def robot_instance(name: str) -> RobotInstance:
-    """The robot of that name, or ProblemError: there is none."""
+    """The robot of that name, or NotFound: there is none."""
     try:
         return load_instance(name)
     except UnknownRobot:
-        raise ProblemError(404, "not_found", "There is no robot of this name.") from None
+        raise NotFound("not_found", "There is no robot of this name.") from None
 
 
 def _fits(answer: Mapping[str, Any], instance: RobotInstance) -> bool:
@@ -86,29 +87,29 @@ def _fits(answer: Mapping[str, Any], instance: RobotInstance) -> bool:
 
 
 def check_worker(plan: OrderedPlan, link: Link) -> None:
-    """Raise ProblemError unless this worker can execute that plan now."""
+    """Raise Conflict unless this worker can execute that plan now."""
     if link.telemetry is not None and link.telemetry.status == FAULT:
         detail = "The robot has a fault; somebody must look at it and acknowledge it first."
-        raise ProblemError(409, "fault", detail)
+        raise Conflict("fault", detail)
     if not plan.fits:
         detail = "The plan was made for another model of robot, or for another version of it."
-        raise ProblemError(409, "model_mismatch", detail)
+        raise Conflict("model_mismatch", detail)
     if link.hello.tool != plan.tool:
         detail = "The plan was made for another tool than the one that is mounted."
-        raise ProblemError(409, "tool_mismatch", detail)
+        raise Conflict("tool_mismatch", detail)
 
 
-def no_worker(consequence: str) -> ProblemError:
-    """The 503 for a robot without a worker."""
-    return ProblemError(503, "no_worker", f"No worker is connected. {consequence}")
+def no_worker(consequence: str) -> Unavailable:
+    """The refusal for a robot without a worker."""
+    return Unavailable("no_worker", f"No worker is connected. {consequence}")
 
 
-def execution_not_found() -> ProblemError:
-    """The 404 for an execution."""
-    return ProblemError(404, "not_found", "There is no execution of this id.")
+def execution_not_found() -> NotFound:
+    """The refusal for an execution."""
+    return NotFound("not_found", "There is no execution of this id.")
 
 
-def wrong_state(execution: Execution, allowed: Sequence[str]) -> ProblemError:
-    """The 409 for a command that makes no sense now."""
+def wrong_state(execution: Execution, allowed: Sequence[str]) -> Conflict:
+    """The refusal of a command that makes no sense now."""
     detail = f"The execution is {execution.status}; this needs one that is {' or '.join(allowed)}."
-    return ProblemError(409, "wrong_state", detail)
+    return Conflict("wrong_state", detail)

@@ -15,7 +15,7 @@ from typing import Any
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.errors import ProblemError
+from app.services.exceptions import Conflict
 from app.services.robots.execution_checks import (
     OrderedPlan,
     check_worker,
@@ -38,6 +38,7 @@ from app.services.robots.execution_record import (
 )
 from app.services.robots.leases import LeaseService
 from app.services.robots.links import Link, LinkService
+from app.services.robots.motions import target_motions
 from app.services.solving.process import SolverLost
 from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
@@ -124,7 +125,7 @@ class ExecutionService:
         While somebody has a lease of the robot, `lease_id` must be its id, here and below.
 
         Raises:
-            ProblemError: it is not taken on, and why.
+            ServiceError: it is not taken on, and why.
             KeyTaken: something was created under the key before.
         """
         plan = await ordered_plan(self._plans, plan_id, robot)
@@ -134,7 +135,7 @@ class ExecutionService:
             if link is None:
                 raise no_worker("Nothing was started.")
             if robot in self._orders:
-                raise ProblemError(409, "busy", "The robot has an active execution.")
+                raise Conflict("busy", "The robot has an active execution.")
             check_worker(plan, link)
             now = timestamp()
             execution = Execution(
@@ -165,7 +166,7 @@ class ExecutionService:
                 key=new_entry(key, 202, execution.location, document),
             )
         except RobotBusy:
-            raise ProblemError(409, "busy", "The robot has an active execution.") from None
+            raise Conflict("busy", "The robot has an active execution.") from None
         except SQLAlchemyError:
             # It may be stored all the same, and nobody would ever end it.
             self._start(self._end_unaccounted(execution))
@@ -183,7 +184,9 @@ class ExecutionService:
 
     async def _prepare(self, order: _Order, plan: OrderedPlan) -> None:
         try:
-            motions = await self._solving.motions(plan.request, plan.answer, order.execution_id)
+            motions = await self._solving.run(
+                target_motions, plan.request, plan.answer, order.execution_id
+            )
         except SolverLost:
             motions = Failure(SOLVER_FAILED, "the solver was lost over the plan", timestamp())
         except Exception:
@@ -209,7 +212,7 @@ class ExecutionService:
             order.link.outbox.hand_over((encode(execute), *motions))
 
     async def document(self, execution_id: str) -> str:
-        """The body of the answer for an execution, or ProblemError: there is none."""
+        """The body of the answer for an execution, or NotFound: there is none."""
         document = await store_call(self._store.document, execution_id)
         if document is None:
             raise execution_not_found()
@@ -242,7 +245,7 @@ class ExecutionService:
             if execution.status not in allowed or order is None:
                 raise wrong_state(execution, allowed)
             if order.canceling and command is not Cancel:
-                raise ProblemError(409, "wrong_state", "The execution is being canceled.")
+                raise Conflict("wrong_state", "The execution is being canceled.")
             order.canceling |= command is Cancel
             withdrawn = command is Cancel and order.withdraw()
             if order.handed_over:

@@ -15,17 +15,12 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import Final
 
-from app.errors import ProblemError
+from app.services.exceptions import Conflict, NotFound
 from app.services.idempotency import key_reused
 from app.store import NewKey
 from hardware.clock import instant_text
 
 LEASE_HEADER: Final = "Prunus-Lease"
-LEAST_LEASE_S: Final = 1.0
-MOST_LEASE_S: Final = 300.0
-"""A client that is gone blocks a robot no longer than this."""
-USUAL_LEASE_S: Final = 30.0
-LONGEST_HOLDER: Final = 100
 
 
 @dataclass(frozen=True)
@@ -70,7 +65,8 @@ class LeaseService:
         """A new lease of a robot that nobody has, or the one that was given under the same key.
 
         Raises:
-            ProblemError: 409, somebody has it; 422, the key stands for another body.
+            Conflict: somebody has it.
+            InvalidRequest: the key stands for another body.
         """
         lease = self.current(robot)
         if lease is None:
@@ -86,7 +82,7 @@ class LeaseService:
         """The same lease from now on, for as long as before or for another duration.
 
         Raises:
-            ProblemError: 404, there is no such lease any more.
+            NotFound: there is no such lease any more.
         """
         lease = self._own(robot, lease_id)
         return self._keep(replace(lease, duration_s=duration_s or lease.duration_s))
@@ -95,12 +91,12 @@ class LeaseService:
         """End a lease.
 
         Raises:
-            ProblemError: 404, there is no such lease any more.
+            NotFound: there is no such lease any more.
         """
         del self._leases[self._own(robot, lease_id).robot]
 
     def check(self, robot: str, lease_id: str) -> None:
-        """Raise ProblemError 409 if somebody has a lease of the robot and it is not this one."""
+        """Raise Conflict if somebody has a lease of the robot and it is not this one."""
         lease = self.current(robot)
         if lease is None or _same(lease.id, lease_id):
             return
@@ -111,7 +107,7 @@ class LeaseService:
         lease = self.current(robot)
         if lease is None or not _same(lease.id, lease_id):
             detail = "There is no lease of this id; it may have expired."
-            raise ProblemError(404, "not_found", detail)
+            raise NotFound("not_found", detail)
         return lease
 
     def _keep(self, lease: Lease) -> Lease:
@@ -124,9 +120,9 @@ class LeaseService:
         self._leases[lease.robot] = lease
         return lease
 
-    def _leased(self, robot: str, detail: str) -> ProblemError:
+    def _leased(self, robot: str, detail: str) -> Conflict:
         wait_s = self._leases[robot].ends - self._monotonic()
-        return ProblemError(409, "leased", detail, retry_after_s=max(1, math.ceil(wait_s)))
+        return Conflict("leased", detail, retry_after_s=max(1, math.ceil(wait_s)))
 
 
 def _same(kept: str, sent: str) -> bool:

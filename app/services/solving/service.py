@@ -7,33 +7,23 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
 
-import orjson
-
-from app.errors import ProblemError
-from app.observation.logs import LogOptions, configure_logs
+from app.observation.logs import LogOptions
 from app.observation.measures import Measures, PlanFigures
-from app.services.comparisons.running import ComparisonOrder, compare_to_bytes
+from app.services.exceptions import Unavailable
 from app.services.plans.batch_reading import BatchLimits, JobOrder, PlanOrder, read_batch
 from app.services.plans.parts import (
-    SolvedPart,
     Totals,
     added,
     head_of,
     joined,
-    plan_figures,
-    solve_part,
 )
 from app.services.plans.selecting import selection_to_json
-from app.services.plans.wire import plan_to_wire
-from app.services.robots.motions import target_motions
-from app.services.solving.long_lived import keep_for_good
 from app.services.solving.pool import SolverPool
 from app.services.solving.process import SolverLost
-from hardware.link.messages import Failure
-from solver import Problem, solve
+from app.services.solving.work import prepare, solve_share, solve_to_json
+from solver import Problem
 from solver.frames.transforms import RigidTransform
 from solver.planner.many_targets import plans_together
-from solver.planner.staged import choose
 
 Result = TypeVar("Result")
 
@@ -42,27 +32,6 @@ SHARED_TARGETS = 200
 
 # A plan takes from milliseconds to seconds, so a queue of them is shorter after this.
 OVERLOAD_RETRY_S = 2
-
-
-def solve_to_json(problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:
-    """The answer's body, and its figures; runs in a worker."""
-    plan = solve(problem)
-    return orjson.dumps(plan_to_wire(plan, plan_id)), plan_figures(plan)
-
-
-def solve_share(problem: Problem) -> SolvedPart:
-    """A share of a batch of independent targets; runs in a worker."""
-    _, part = solve_part(problem, choose(problem), 0, len(problem.targets), problem.start)
-    return part
-
-
-def prepare(logs: LogOptions) -> None:
-    """Make a solver process ready: its logs, then its kernels."""
-    configure_logs(logs)
-    from solver.warm_up import warm_up
-
-    warm_up()
-    keep_for_good()
 
 
 class SolvingService:
@@ -97,7 +66,7 @@ class SolvingService:
         """The answer's body for a problem.
 
         Raises:
-            ProblemError: 503, the worker died over it, or too many are waiting.
+            Unavailable: the worker died over it, or too many are waiting.
         """
         async with self._place():
             answer, figures = await self._solve(problem, plan_id)
@@ -108,19 +77,19 @@ class SolvingService:
     async def _place(self) -> AsyncIterator[None]:
         """One of the places for batches; what ends the solver over it is told as a problem."""
         if self._solving >= self._workers + self._most_waiting:
-            raise ProblemError(
-                503, "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
+            raise Unavailable(
+                "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
             )
         self._solving += 1
         try:
             yield
         except SolverLost:
-            raise ProblemError(
-                503, "solver_unavailable", "The solver was lost; it has been started again."
+            raise Unavailable(
+                "solver_unavailable", "The solver was lost; it has been started again."
             ) from None
         except asyncio.CancelledError:
             # Only the server's shutdown cancels a request; its client still gets an answer.
-            raise ProblemError(503, "solver_unavailable", "The service is shutting down.") from None
+            raise Unavailable("solver_unavailable", "The service is shutting down.") from None
         finally:
             self._solving -= 1
 
@@ -128,13 +97,13 @@ class SolvingService:
         independent = problem.options.order == "independent" and plans_together(problem)
         shared = self._workers > 1 and len(problem.targets) >= SHARED_TARGETS
         if not (shared and independent):
-            return await self._run(solve_to_json, problem, plan_id)
+            return await self.run(solve_to_json, problem, plan_id)
         size = -(-len(problem.targets) // self._workers)
         shares = [
             replace(problem, targets=problem.targets[first : first + size])
             for first in range(0, len(problem.targets), size)
         ]
-        solved = await asyncio.gather(*(self._run(solve_share, share) for share in shares))
+        solved = await asyncio.gather(*(self.run(solve_share, share) for share in shares))
         figures = added(part.figures for part in solved)
         totals = Totals(
             figures.planned,
@@ -155,40 +124,29 @@ class SolvingService:
         """What a large body asks for; see `app.services.plans.batch_reading.read_batch`.
 
         Raises:
-            ProblemError: 422, the request makes no sense; 503, the worker died over it, or too
+            InvalidRequest: the request makes no sense.
+            Unavailable: the worker died over it, or too
                 many are waiting.
         """
         async with self._place():
-            return await self._run(read_batch, body, limits, as_job, frames.get)
+            return await self.run(read_batch, body, limits, as_job, frames.get)
 
     async def select(self, body: bytes) -> bytes:
         """The answer to a large thinning selection; see `app.services.plans.selecting`.
 
         Raises:
-            ProblemError: 422, the request makes no sense; 503, as for `read`.
+            InvalidRequest: the request makes no sense.
+            Unavailable: as for `read`.
         """
         async with self._place():
-            return await self._run(selection_to_json, body)
+            return await self.run(selection_to_json, body)
 
-    async def motions(
-        self, request: str, answer: str, execution_id: str
-    ) -> tuple[str, ...] | Failure:
-        """A stored plan's motions, verified anew; see `app.services.robots.motions`.
+    async def run(self, work: Callable[..., Result], *arguments: Any) -> Result:
+        """A function's result, computed in a solver process; function and arguments are sent there.
 
         Raises:
             SolverLost: the worker died over it.
         """
-        return await self._run(target_motions, request, answer, execution_id)
-
-    async def compare(self, order: ComparisonOrder) -> tuple[bytes, str]:
-        """A comparison's JSON and page.
-
-        Raises:
-            SolverLost: the worker died over it.
-        """
-        return await self._run(compare_to_bytes, order)
-
-    async def _run(self, work: Callable[..., Result], *arguments: Any) -> Result:
         self._count(1)
         try:
             return await self._pool.run(work, *arguments)

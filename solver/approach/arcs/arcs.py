@@ -5,37 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.approach.arcs.many import arcs_of_many
 from solver.approach.arcs.search import WHOLE_TURN
-from solver.approach.optimum.batch_search import arcs_of_many
 from solver.approach.task.feasibility import sample
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.approach.uncertainty.robustness import robust_arcs
 from solver.kinematics.spherical_wrist import BRANCHES
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
+from solver.problem.solution import Arc
+from solver.problem.targets import Target
 from solver.robots.model import Array, Robot
 from solver.tolerances import ARC_SAMPLES
-
-
-@dataclass(frozen=True)
-class Arc:
-    """Approach angles, lower to upper [rad], at which one branch is feasible in the whole cut-in.
-
-    Attributes:
-        tool_side: 1 or -1.
-        branch: 0 to 7.
-        lower_rad: in [-pi, pi].
-        upper_rad: beyond pi where the arc crosses the half turn.
-        lower_limit: what ends the arc there: a joint's name, "reach", "wrist_jump", or the
-            target's "uncertainty"; None where the arc is the whole turn.
-        upper_limit: the same at the upper end.
-    """
-
-    tool_side: int
-    branch: int
-    lower_rad: float
-    upper_rad: float
-    lower_limit: str | None = None
-    upper_limit: str | None = None
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from solver.kinematics.forward import forward_kinematics, many_poses, tool_centr
 from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.motion.timing import TimedRows, time_cut_in
-from solver.problem.problem import Options
+from solver.problem.options import Options
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import (

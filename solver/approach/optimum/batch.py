@@ -6,19 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.arcs.arcs import Arc, limit_names, named_arc
-from solver.approach.optimum.batch_search import NO_BRANCH, arcs_of_many, optimise, paths_of_many
-from solver.approach.task.frame import approach_frames
-from solver.approach.task.packed import jump_cosines, pack
-from solver.approach.task.task import approach_task
-from solver.approach.uncertainty.robustness import robust_arcs
-from solver.kinematics.spherical_wrist import wrist_geometry
-from solver.problem.problem import Problem, Target
+from solver.approach.optimum.batch_search import optimise, paths_of_many
+from solver.approach.task.packed import jump_cosines
+from solver.approach.task.packing import packed_targets
+from solver.problem.problem import Problem
+from solver.problem.solution import Arc
 from solver.robots.model import Array
-from solver.robots.rigid import inverse
 from solver.tolerances import BATCH_PART, EXCHANGE_DENSITY
-
-__all__ = ["NO_BRANCH", "Optima", "chosen_paths", "closed_form_optima", "feasible_arcs"]
 
 
 @dataclass(frozen=True)
@@ -71,42 +65,6 @@ def closed_form_optima(
         fields = (field[part] for field in found)
         optimise(numbers, retreats, jump_cosines(retreats), *fields)
     return Optima(*found)
-
-
-def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
-    """The feasible arcs of every target of a problem by its id, empty where it has none.
-
-    They are those of the task without a strike zone and a tilt tolerance, at `path_points` rows.
-
-    Raises:
-        UnsupportedKinematics: the robot has no closed form.
-    """
-    return arcs_of_packed(problem, packed_problem(problem))
-
-
-def packed_problem(problem: Problem) -> Array:
-    """A problem's own targets seen from its start posture, shape (sides, n, NUMBERS)."""
-    positions = np.array([target.position_m for target in problem.targets], dtype=np.float64)
-    directions = np.array([target.branch_direction for target in problem.targets], dtype=np.float64)
-    return packed_targets(problem, positions, directions, np.asarray(problem.start))
-
-
-def arcs_of_packed(problem: Problem, numbers: Array) -> dict[str, tuple[Arc, ...]]:
-    """`feasible_arcs` for targets that are packed already."""
-    targets, options = problem.targets, problem.options
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
-    table = arcs_of_many(numbers, retreats, jump_cosines(retreats))
-    found: dict[str, list[Arc]] = {target.id: [] for target in targets}
-    names = limit_names(problem.robot)
-    for k, side, *arc in table.tolist():
-        found[targets[int(k)].id].append(named_arc(1 - 2 * int(side), arc, names))
-    return {target.id: _robust(problem, target, found[target.id]) for target in targets}
-
-
-def _robust(problem: Problem, target: Target, arcs: list[Arc]) -> tuple[Arc, ...]:
-    if not target.position_std_m:
-        return tuple(arcs)
-    return robust_arcs(approach_task(problem, target, problem.start), arcs)
 
 
 @dataclass(frozen=True)
@@ -166,33 +124,3 @@ def finer_paths(
         suspicious,
     )
     return ChosenPaths(joints, suspicious)
-
-
-def packed_targets(
-    problem: Problem, positions: Array, directions: Array, references: Array
-) -> Array:
-    """Targets for the inner loops by tool side and target, shape (sides, n, NUMBERS)."""
-    options, robot = problem.options, problem.robot
-    geometry = wrist_geometry(robot, problem.mounted_tool)
-    limits = (
-        robot.lower + options.limit_margin_rad,
-        robot.upper - options.limit_margin_rad,
-    )
-    branch, outward, sideways = approach_frames(positions, directions)
-    mount = inverse(robot.mount)
-    turn = mount[:3, :3].T
-    placed = positions @ turn + mount[:3, 3]
-    sides = (1, -1) if options.symmetric_tool else (1,)
-    return np.stack(
-        [
-            pack(
-                geometry,
-                limits,
-                (placed, side * branch @ turn, outward @ turn, sideways @ turn),
-                references,
-                np.asarray(problem.joint_weights),
-                options.norm == "l2",
-            )
-            for side in sides
-        ]
-    )

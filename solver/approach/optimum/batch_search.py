@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 
-from solver.approach.arcs.roots import arc_scratch
-from solver.approach.arcs.search import ARC_COLUMNS, MOST_ARCS, find_arcs
 from solver.approach.arcs.turns import TURN_ROWS, path_columns, turns_along_path
 from solver.approach.cut_in.between_rows import may_leave_between
 from solver.approach.optimum.cheapest import cheapest, cheapest_scratch
@@ -43,27 +41,6 @@ def optimise(numbers, retreats, cos_steps, angles, sides, branches, efforts, pat
         task = PackedTask(numbers[chosen, k], retreats, cos_steps)
         turns_along_path(task, angle, branch // 2, turns)
         path_joints(task, turns, branch % 2, joints, paths[k])
-
-
-@kernel
-def arcs_of_many(numbers, retreats, cos_steps):
-    """Feasible arcs of many targets, shape (arcs, 2 + ARC_COLUMNS).
-
-    Columns: target, tool side as its place in `numbers`, then those of one target's arcs.
-    """
-    scratch = arc_scratch(len(retreats))
-    arcs = np.empty((MOST_ARCS, ARC_COLUMNS))
-    table, count = np.empty((4 * numbers.shape[1] + MOST_ARCS, 2 + ARC_COLUMNS)), 0
-    for k in range(numbers.shape[1]):
-        for side in range(numbers.shape[0]):
-            own = find_arcs(PackedTask(numbers[side, k], retreats, cos_steps), scratch, arcs)
-            if count + own > len(table):
-                table = np.concatenate((table, np.empty_like(table)))
-            for i in range(own):
-                table[count, 0], table[count, 1] = k, side
-                table[count, 2:] = arcs[i]
-                count += 1
-    return table[:count].copy()
 
 
 @kernel

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.approach.arcs.arcs import Arc, sample_angles, task_arcs
+from solver.approach.arcs.arcs import sample_angles, task_arcs
 from solver.approach.refusal.closest import FEASIBLE, closest_failure
 from solver.approach.refusal.nearest_change import nearest_angle, nearest_displacement
 from solver.approach.task.feasibility import trace
@@ -13,7 +13,7 @@ from solver.approach.task.task import ApproachTask
 from solver.approach.uncertainty.displacement import displacement_margin
 from solver.approach.uncertainty.robust_search import robust_pieces
 from solver.approach.uncertainty.robustness import needed_margin
-from solver.problem.solution import Reason
+from solver.problem.solution import Arc, Reason
 from solver.robots.model import Array
 from solver.tolerances import DIAGNOSED_ANGLES, UNCERTAINTY_DEVIATIONS
 

@@ -10,7 +10,9 @@ from solver.approach.task.feasibility import CutInTask, trace
 from solver.approach.task.frame import ApproachFrame, approach_frame
 from solver.approach.task.packed import PackedTask, jump_cosines, pack
 from solver.kinematics.spherical_wrist import wrist_geometry
-from solver.problem.problem import Options, Problem, Target
+from solver.problem.options import Options
+from solver.problem.problem import Problem
+from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 

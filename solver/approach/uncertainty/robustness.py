@@ -9,7 +9,6 @@ reach; what is used is the exact distance to the nearest limit.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +19,12 @@ from solver.approach.uncertainty.robust_search import robust_pieces
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import wrist_geometry
-from solver.problem.problem import Options, Target
+from solver.problem.options import Options
+from solver.problem.solution import Arc
+from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import UNCERTAINTY_DEVIATIONS
-
-if TYPE_CHECKING:
-    from solver.approach.arcs.arcs import Arc
 
 
 def needed_margin(target: Target) -> float:
@@ -34,7 +32,7 @@ def needed_margin(target: Target) -> float:
     return UNCERTAINTY_DEVIATIONS * (target.position_std_m or 0.0)
 
 
-def robust_arcs(task: ApproachTask, arcs: Sequence["Arc"]) -> tuple["Arc", ...]:
+def robust_arcs(task: ApproachTask, arcs: Sequence[Arc]) -> tuple[Arc, ...]:
     """The parts of feasible arcs that bear the target's uncertainty; all where it has none."""
     needed = needed_margin(task.target)
     if needed == 0.0:
@@ -47,7 +45,7 @@ def robust_arcs(task: ApproachTask, arcs: Sequence["Arc"]) -> tuple["Arc", ...]:
     return tuple(found)
 
 
-def _part(arc: "Arc", low: float, high: float) -> "Arc":
+def _part(arc: Arc, low: float, high: float) -> Arc:
     return replace(
         arc,
         lower_rad=low,

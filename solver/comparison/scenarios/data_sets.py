@@ -17,7 +17,8 @@ from typing import Final
 
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest, Published
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
+from solver.problem.targets import Target
 from solver.problem.thinning import Blossom, BlossomBranch, select_blossoms
 from solver.robots.model import load_robot
 

@@ -15,7 +15,8 @@ import numpy as np
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest
 from solver.comparison.scenarios.data_sets import BLOSSOM_SPACING_M, THESIS
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
+from solver.problem.targets import Target
 from solver.problem.thinning import Blossom, BlossomBranch, PlacedBlossom, select_blossoms
 from solver.robots.model import Array, load_robot
 

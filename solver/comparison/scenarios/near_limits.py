@@ -4,12 +4,13 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from solver.approach.arcs.arcs import Arc
-from solver.approach.optimum.batch import feasible_arcs
+from solver.approach.arcs.of_problem import feasible_arcs
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest
 from solver.comparison.targets import as_targets, drawn_at_edges
-from solver.problem.problem import Options, Problem
+from solver.problem.options import Options
+from solver.problem.problem import Problem
+from solver.problem.solution import Arc
 from solver.robots.model import load_robot
 
 SEED: Final = 20_122

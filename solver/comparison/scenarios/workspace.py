@@ -5,11 +5,13 @@ from typing import Final
 
 import numpy as np
 
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.comparison.approach_contest import approach_contest, chosen, method_variants
 from solver.comparison.contest import Contest
 from solver.comparison.targets import as_targets, drawn_in_box
-from solver.problem.problem import Problem, Target
+from solver.problem.problem import Problem
+from solver.problem.targets import Target
 from solver.robots.model import load_robot
 
 SEED: Final = 20_121

@@ -7,7 +7,7 @@ from typing import Final, Protocol
 from solver.methods.nlp.instance import Instance, ProgrammeResult
 from solver.methods.nlp.ipopt import solve_by_ipopt
 from solver.methods.nlp.sqp import solve_by_sqp
-from solver.problem.problem import Options
+from solver.problem.options import Options
 from solver.robots.model import Robot
 
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from solver.approach.arcs.arcs import sample_task
 from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.relaxation import placement, rotation
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.nlp.instance import Start
-from solver.methods.semi_analytic import best_on_arcs
 from solver.robots.model import Array
 from solver.tolerances import NEAR_FEASIBLE_RAD, RELAXED_SAMPLES, RELAXED_SWINGS
 

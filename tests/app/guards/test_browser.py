@@ -7,7 +7,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from app.guards.browser import BrowserGuardMiddleware, is_loopback
+from app.guards.browser import BrowserGuardMiddleware
+from app.settings import is_loopback
 from tests.app.conftest import Server, assert_problem
 from tests.app.fake_worker import link_url
 

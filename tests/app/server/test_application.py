@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.errors import MOST_FAULTS
+from app.schemas.faults import MOST_FAULTS
 from app.schemas.options import TEXTS, known_values
 from app.server.application import create_app
 from app.services.plans.wire import parse_request, problem_from_wire
@@ -19,9 +19,10 @@ from hardware.end_effector.output import END_EFFECTORS
 from solver import InvalidProblem, Options, Problem
 from solver.comparison.run import MAXIMUM_REPEATS, MOST_REPEATS
 from solver.comparison.summary import FAILURE_CHARGE
+from solver.frames.checks import FURTHEST_M
 from solver.frames.point_pairs import LEAST_PAIRS, MOST_PAIRS
-from solver.frames.transforms import FURTHEST_M, ORTHONORMAL, UNIT_QUATERNION
-from solver.problem.problem import MOST_WEIGHT, RANGES
+from solver.frames.transforms import ORTHONORMAL, UNIT_QUATERNION
+from solver.problem.options import MOST_WEIGHT, RANGES
 from solver.problem.solution import REASON_CODES
 from solver.problem.thinning import LONGEST_SEGMENT_M
 from solver.tolerances import (

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import URL, Engine, func, select
 
-from app.errors import ProblemError
+from app.services.exceptions import ServiceError, Unavailable
 from app.services.idempotency import IdempotencyService
 from app.store import (
     ComparisonStore,
@@ -54,7 +54,7 @@ class Services:
         async def create() -> KeyedAnswer:
             await asyncio.sleep(0)
             if fails:
-                raise ProblemError(503, "solver_unavailable", "")
+                raise Unavailable("solver_unavailable", "")
             plan_id = _fresh()
             entry = new_entry(new_key, 201, plan_id)
             await asyncio.to_thread(
@@ -65,7 +65,7 @@ class Services:
 
         try:
             return (await self._services[service].once(new_key, create)).location
-        except ProblemError as error:
+        except ServiceError as error:
             return error.code
 
 

@@ -3,12 +3,12 @@
 import pytest
 
 from solver import Robot
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
 from solver.comparison import cold_start
 from solver.comparison.cold_start import cold_solve
 from solver.methods.nlp import sqp
 from solver.methods.nlp.backends import BACKENDS
-from solver.methods.semi_analytic import best_on_arcs
 from tests.solver.problems import data_set_3
 
 

@@ -14,10 +14,10 @@ from solver.frames.transforms import (
     ORTHONORMAL,
     UNIT_QUATERNION,
     RigidTransform,
-    targets_in_base,
     transform_from_matrix,
     transform_from_quaternion,
 )
+from solver.problem.targets import targets_in_base
 from solver.robots.model import Array
 
 coordinates = st.floats(-2.0, 2.0)

@@ -8,6 +8,7 @@ import pytest
 
 from solver import Options, Problem, Robot, solve, verify_plan
 from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.relaxation import placement
 from solver.approach.task.task import ApproachTask, approach_task
@@ -16,7 +17,7 @@ from solver.methods.ncos import solve_ncos, solve_on_arc
 from solver.methods.nlp import ipopt, sqp
 from solver.methods.nlp.backends import BACKENDS
 from solver.methods.nlp.quadratic import QP_SOLVERS
-from solver.methods.semi_analytic import best_on_arcs, solve_ssas
+from solver.methods.semi_analytic import solve_ssas
 from solver.problem.effort import posture_effort
 from solver.tolerances import LIMIT_EXCESS_RAD
 from tests.solver.problems import data_set_3, random_targets

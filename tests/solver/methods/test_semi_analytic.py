@@ -3,8 +3,8 @@ import math
 import pytest
 
 from solver import Options, Problem, Robot
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
-from solver.methods.semi_analytic import best_on_arcs
 from tests.solver.methods.brute_force import least_effort_of_sweep
 from tests.solver.problems import random_targets
 

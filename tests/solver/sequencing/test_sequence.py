@@ -7,7 +7,8 @@ import pytest
 
 from bench.order_references import even_ladder_effort, greedy_effort
 from solver import Options, Problem, Robot, Target
-from solver.approach.optimum.batch import feasible_arcs, packed_problem
+from solver.approach.arcs.of_problem import feasible_arcs
+from solver.approach.task.packing import packed_problem
 from solver.sequencing.batch import Batch
 from solver.sequencing.gather import gather
 from solver.sequencing.ladder_graph import refined_ladder

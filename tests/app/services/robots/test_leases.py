@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.errors import ProblemError
+from app.services.exceptions import ServiceError
 from app.services.robots.leases import LeaseService
 from app.store import NewKey
 
@@ -16,8 +16,8 @@ class Clock:
         return self.now_s
 
 
-def refused(code: str) -> "pytest.RaisesExc[ProblemError]":
-    return pytest.raises(ProblemError, check=lambda error: error.code == code)
+def refused(code: str) -> "pytest.RaisesExc[ServiceError]":
+    return pytest.raises(ServiceError, check=lambda error: error.code == code)
 
 
 @given(duration=st.floats(1, 300), share=st.floats(0, 0.999))

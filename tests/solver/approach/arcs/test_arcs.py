@@ -9,9 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from solver import Options, Problem, Robot, Target
-from solver.approach.arcs.arcs import Arc, sample_angles_of, task_arcs
-from solver.approach.optimum.batch import feasible_arcs
+from solver.approach.arcs.arcs import sample_angles_of, task_arcs
+from solver.approach.arcs.of_problem import feasible_arcs
 from solver.approach.task.task import ApproachTask, approach_task
+from solver.problem.solution import Arc
 from solver.robots.model import Array
 from tests.solver.approach.targets import (
     near_limits,

@@ -9,9 +9,9 @@ import pytest
 
 from solver import InvalidProblem, Options, Problem, Robot, Target, solve, verify, verify_plan
 from solver.approach.bounds.certificate import certify_task
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.registry import METHODS
-from solver.methods.semi_analytic import best_on_arcs
 from tests.solver.approach.targets import SETS, straight_wrists
 from tests.solver.kinematics.arms import arms
 from tests.solver.methods.brute_force import least_effort_of_sweep

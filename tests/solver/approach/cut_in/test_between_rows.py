@@ -3,7 +3,9 @@
 import numpy as np
 
 from solver import Options, Problem, Robot
-from solver.approach.optimum.batch import chosen_paths, feasible_arcs, packed_problem
+from solver.approach.arcs.of_problem import feasible_arcs
+from solver.approach.optimum.batch import chosen_paths
+from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from tests.solver.problems import random_targets
 

@@ -18,11 +18,11 @@ from solver import (
     verify_plan,
 )
 from solver.approach.numerical.warm_start import NumericalStart, numerical_warm_start, same_side
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.numerical import chain_of, polish, postures_behind
 from solver.methods.registry import METHODS
-from solver.methods.semi_analytic import best_on_arcs
 from solver.planner.retiming import ChosenApproach, retime
 from solver.problem.solution import Reason
 from solver.robots.model import Array

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Robot
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
-from solver.methods.semi_analytic import best_on_arcs
 from tests.solver.problems import random_targets
 
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Robot, Target, load_robot
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
+from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
-from solver.methods.semi_analytic import best_on_arcs
 from solver.robots.model import Array
 from solver.tolerances import EFFORT_ERROR_RELATIVE
 from tests.solver.approach.targets import SETS

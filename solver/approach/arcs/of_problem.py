@@ -1,0 +1,43 @@
+"""The feasible arcs of every target of a problem."""
+
+import numpy as np
+
+from solver.approach.arcs.arcs import limit_names, named_arc
+from solver.approach.arcs.many import arcs_of_many
+from solver.approach.task.packed import jump_cosines
+from solver.approach.task.packing import packed_problem
+from solver.approach.task.task import approach_task
+from solver.approach.uncertainty.robustness import robust_arcs
+from solver.problem.problem import Problem
+from solver.problem.solution import Arc
+from solver.problem.targets import Target
+from solver.robots.model import Array
+
+
+def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
+    """The feasible arcs of every target of a problem by its id, empty where it has none.
+
+    They are those of the task without a strike zone and a tilt tolerance, at `path_points` rows.
+
+    Raises:
+        UnsupportedKinematics: the robot has no closed form.
+    """
+    return arcs_of_packed(problem, packed_problem(problem))
+
+
+def arcs_of_packed(problem: Problem, numbers: Array) -> dict[str, tuple[Arc, ...]]:
+    """`feasible_arcs` for targets that are packed already."""
+    targets, options = problem.targets, problem.options
+    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    table = arcs_of_many(numbers, retreats, jump_cosines(retreats))
+    found: dict[str, list[Arc]] = {target.id: [] for target in targets}
+    names = limit_names(problem.robot)
+    for k, side, *arc in table.tolist():
+        found[targets[int(k)].id].append(named_arc(1 - 2 * int(side), arc, names))
+    return {target.id: _robust(problem, target, found[target.id]) for target in targets}
+
+
+def _robust(problem: Problem, target: Target, arcs: list[Arc]) -> tuple[Arc, ...]:
+    if not target.position_std_m:
+        return tuple(arcs)
+    return robust_arcs(approach_task(problem, target, problem.start), arcs)

@@ -1,0 +1,36 @@
+"""The least effort over every feasible arc of one task."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.approach.arcs.arcs import task_arcs
+from solver.approach.optimum.search import optimum_on_arcs
+from solver.approach.task.task import ApproachTask
+from solver.problem.solution import Arc
+
+
+@dataclass(frozen=True)
+class ArcOptimum:
+    """The least effort over all arcs: the arc, the angle inside it (not wrapped), its effort."""
+
+    arc: Arc
+    angle_rad: float
+    effort: float
+    refined: int
+
+
+def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:
+    """The least effort over every arc of every branch; None when there is no arc."""
+    arcs = task_arcs(task)
+    packed = [task.packed(side) for side in task.tool_sides]
+    chosen, angle, effort, refined = optimum_on_arcs(
+        np.stack([side.numbers for side in packed]),
+        packed[0].retreats,
+        packed[0].cos_steps,
+        np.array([task.tool_sides.index(arc.tool_side) for arc in arcs], dtype=np.int64),
+        np.array([arc.branch for arc in arcs], dtype=np.int64),
+        np.array([arc.lower_rad for arc in arcs]),
+        np.array([arc.upper_rad for arc in arcs]),
+    )
+    return None if chosen < 0 else ArcOptimum(arcs[chosen], angle, effort, refined)
