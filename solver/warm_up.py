@@ -52,7 +52,7 @@ def refusals_and_bounds() -> None:
 def orders() -> None:
     """Few targets are ordered by other kernels than many; robots share them."""
     from solver import Options, Problem, load_robot, solve
-    from solver.tolerances import EXACT_TARGETS
+    from solver.sequencing.tolerances import EXACT_TARGETS
 
     robot = load_robot("tabletop")
     for count in (2, EXACT_TARGETS + 1):

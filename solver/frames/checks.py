@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from solver.exceptions import Fault
-from solver.tolerances import SHORTEST_DIRECTION
+from solver.frames.tolerances import SHORTEST_DIRECTION
 
 FURTHEST_M: Final = 1e7
 """Coordinates beyond are refused [m]. Northings of maps end there, where doubles still tell points

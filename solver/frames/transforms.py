@@ -16,8 +16,8 @@ from scipy.spatial.transform import Rotation
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.checks import position_faults, vector_fault
+from solver.frames.tolerances import SHORTEST_DIRECTION
 from solver.robots.model import Array
-from solver.tolerances import SHORTEST_DIRECTION
 
 UNIT_QUATERNION: Final = 1e-3
 """How far the length of a quaternion may be from one: what is left of it written with three digits.

@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.compiled import kernel
-from solver.robots.model import Array, Robot, Tool
-from solver.tolerances import (
-    NUMERICAL_DAMPING,
+from solver.kinematics.tolerances import (
     NUMERICAL_FOLLOWED,
     NUMERICAL_MOST_PIECES,
     NUMERICAL_POLISH_STEPS,
     NUMERICAL_POLISHED,
 )
+from solver.robots.model import Array, Robot, Tool
+from solver.tolerances import NUMERICAL_DAMPING
 
 
 class Chain(NamedTuple):

@@ -39,9 +39,10 @@ from numpy.typing import NDArray
 from solver.compiled import inlined, kernel
 from solver.exceptions import UnsupportedKinematics
 from solver.kinematics.arctangent import atan2
+from solver.kinematics.tolerances import RIGHT_ANGLE_RAD, TINY_M2
 from solver.robots.model import REVOLUTE, Array, Robot, Tool
 from solver.robots.rigid import inverse
-from solver.tolerances import REACH_ROUNDING_M, RIGHT_ANGLE_RAD, SINGULAR_WRIST, TINY_M2
+from solver.tolerances import REACH_ROUNDING_M, SINGULAR_WRIST
 
 BRANCHES: Final = 8
 

@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 
 from solver.kinematics.dynamics import joint_loads
+from solver.kinematics.tolerances import WEIGHT_POSTURES, WEIGHT_SEED
 from solver.robots.model import Array, Robot, Tool
-from solver.tolerances import WEIGHT_POSTURES, WEIGHT_SEED
 
 
 @lru_cache(maxsize=64)

@@ -24,10 +24,10 @@ from solver.methods.nlp.relaxed import solve_relaxed
 from solver.methods.nlp.starts import corners, nearest_starts, start_at
 from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
+from solver.methods.tolerances import RELAXED_NEAREST, RELAXED_STARTS
 from solver.problem.effort import posture_effort
 from solver.problem.solution import Reason
 from solver.robots.model import Array
-from solver.tolerances import RELAXED_NEAREST, RELAXED_STARTS
 
 SOLVED = "solved"
 AS_GOOD = "solved_warm_start_as_good"

@@ -6,8 +6,8 @@ import numpy as np
 
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.families import Rail
+from solver.methods.tolerances import RAIL_POSITIONS
 from solver.robots.model import Array
-from solver.tolerances import RAIL_POSITIONS
 
 
 def at_rail(task: ApproachTask, rail: Rail, position_m: float) -> ApproachTask:

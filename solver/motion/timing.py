@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.motion.rates import rate_ratios
+from solver.motion.tolerances import FLAT_SLOPE_RAD_M, STILL_RAD
 from solver.robots.model import Array, Robot
-from solver.tolerances import FLAT_SLOPE_RAD_M, STILL_RAD
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from solver.problem.options import (
     Options,
 )
 from solver.problem.targets import Target
+from solver.problem.tolerances import LARGEST_STD_REACHES, UNIT_MISTAKE_REACHES
 from solver.robots.model import Robot, Tool
-from solver.tolerances import LARGEST_STD_REACHES, UNIT_MISTAKE_REACHES
 
 
 def problem_faults(

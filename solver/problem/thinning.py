@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 
 from solver.exceptions import Fault, InvalidProblem
+from solver.problem.tolerances import SAME_POINT_M
 from solver.robots.model import Array
-from solver.tolerances import SAME_POINT_M
 
 # Whole nanometres, so that a blossom at a window's boundary is on the side where decimals put it.
 _NANOMETRES: Final = 1_000_000_000

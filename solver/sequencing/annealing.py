@@ -14,7 +14,7 @@ import numpy as np
 
 from solver.compiled import kernel
 from solver.sequencing.min_plus import relax
-from solver.tolerances import (
+from solver.sequencing.tolerances import (
     ANNEAL_COLD,
     ANNEAL_HOT,
     ANNEAL_LONGEST_RUN,

@@ -10,7 +10,7 @@ from solver.sequencing.batch import Batch, Indices, arc_postures
 from solver.sequencing.distances import nearest_next, target_distances
 from solver.sequencing.exhaustive import cheapest_orders
 from solver.sequencing.ladder_graph import even_nodes, node_angles
-from solver.tolerances import (
+from solver.sequencing.tolerances import (
     ANNEAL_NEIGHBOURS,
     ANNEAL_STEP_RAD,
     ANNEAL_TRIALS,

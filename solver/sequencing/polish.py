@@ -16,7 +16,7 @@ import numpy as np
 
 from solver.compiled import kernel
 from solver.sequencing.batch import arc_postures
-from solver.tolerances import (
+from solver.sequencing.tolerances import (
     CHAIN_GAIN_RELATIVE,
     CHAIN_MU_FACTOR,
     CHAIN_MU_LEAST,

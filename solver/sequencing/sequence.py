@@ -22,7 +22,8 @@ from solver.sequencing.gather import gather
 from solver.sequencing.ladder_graph import refined_ladder
 from solver.sequencing.ordering import orders_worth_refining
 from solver.sequencing.polish import polished
-from solver.tolerances import EXCHANGE_ROUNDS, LADDER_KEPT, LADDER_ROUNDS, LADDER_STEP_RAD
+from solver.sequencing.tolerances import LADDER_KEPT, LADDER_ROUNDS, LADDER_STEP_RAD
+from solver.tolerances import EXCHANGE_ROUNDS
 
 ArcsOf = Callable[[ApproachTask], Sequence[Arc]]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.robots.rigid import Array, inverse
-from solver.tolerances import SAME_AXIS
+from solver.urdf.tolerances import SAME_AXIS
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from solver.kinematics.forward import forward_kinematics
 from solver.robots.model import PRISMATIC, REVOLUTE, Array, Joint, Link, Robot, Tool, check_robot
 from solver.robots.rigid import inverse, roll_pitch_yaw, transform
 from solver.robots.toml_writing import with_version
-from solver.tolerances import CONVERTED_POSE, CONVERTED_POSTURES, URDF_DIGITS
 from solver.urdf.axes import Row, Rows, denavit_hartenberg
+from solver.urdf.tolerances import CONVERTED_POSE, CONVERTED_POSTURES, URDF_DIGITS
 
 MOVING: Final = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
 

@@ -20,11 +20,11 @@ from solver.tolerances import (
     JOINT_RATE_RAD_M,
     LIMIT_EXCESS_RAD,
     POSITION_ERROR_M,
-    RATE_EXCESS_RELATIVE,
     SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
 from solver.verification.residual import Residual
+from solver.verification.tolerances import RATE_EXCESS_RELATIVE
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,13 @@ from solver.approach.arcs.many import arcs_of_many
 from solver.approach.arcs.search import WHOLE_TURN
 from solver.approach.task.feasibility import sample
 from solver.approach.task.task import ApproachTask, approach_task
+from solver.approach.tolerances import ARC_SAMPLES
 from solver.approach.uncertainty.robustness import robust_arcs
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem.problem import Problem
 from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot
-from solver.tolerances import ARC_SAMPLES
 
 
 @dataclass(frozen=True)

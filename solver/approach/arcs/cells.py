@@ -11,6 +11,12 @@ straight wrist or the waist's axis, and does not enter the arm's reach, where it
 import math
 from typing import Final
 
+from solver.approach.arcs.tolerances import (
+    CLEAR_MARGIN,
+    NARROW_JUMP_RAD,
+    ROUND_TURN_COSINE,
+    STEEPEST_JUMP,
+)
 from solver.approach.arcs.turns import (
     BESIDE,
     JOINT_OF_ROW,
@@ -25,15 +31,8 @@ from solver.approach.arcs.turns import (
     swings,
 )
 from solver.approach.task.packed import COS_HALF
+from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
 from solver.compiled import inlined, kernel
-from solver.tolerances import (
-    ARC_CELLS,
-    CELL_SWING_COSINE,
-    CLEAR_MARGIN,
-    NARROW_JUMP_RAD,
-    ROUND_TURN_COSINE,
-    STEEPEST_JUMP,
-)
 
 ARC_NODES: Final = ARC_CELLS + 3
 """Ends of all cells, and a node beyond at each side."""

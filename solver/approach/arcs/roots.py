@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.approach.arcs.cells import ARC_NODES
+from solver.approach.arcs.tolerances import ARC_END_RAD, EXTREME_ANGLE_RAD
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
     JUMP,
@@ -20,9 +21,9 @@ from solver.approach.arcs.turns import (
     turns_along_path,
     write_turns,
 )
+from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import kernel
 from solver.robots.model import Array
-from solver.tolerances import ARC_CELLS, ARC_END_RAD, EXTREME_ANGLE_RAD
 
 ARMS = 4
 """Branches but for the wrist: shoulder and elbow."""

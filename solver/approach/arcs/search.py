@@ -27,6 +27,7 @@ from solver.approach.arcs.cells import (
     path_state,
 )
 from solver.approach.arcs.roots import ARMS, extreme_margin, tighten
+from solver.approach.arcs.tolerances import EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
     JUMP,
@@ -37,8 +38,8 @@ from solver.approach.arcs.turns import (
     turns_along_path,
     write_turns,
 )
+from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import kernel
-from solver.tolerances import ARC_CELLS, EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
 
 MOST_ARCS = 64
 ARC_COLUMNS = 5

@@ -17,14 +17,10 @@ from solver.approach.bounds.intervals import (
     square,
     subtract,
 )
+from solver.approach.bounds.tolerances import CERTIFICATE_PIECES
 from solver.approach.task.feasibility import effort, limit_margin, posture, tool_axes, trace
 from solver.compiled import kernel
-from solver.tolerances import (
-    CERTIFICATE_PIECES,
-    JOINT_RATE_RAD_M,
-    LIMIT_EXCESS_RAD,
-    REACH_ROUNDING_M,
-)
+from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, REACH_ROUNDING_M
 
 _TURN = 2 * math.pi
 _HALF_TURN_ABOVE = math.nextafter(math.pi, 4.0)

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 from solver.approach.bounds.bounding import prove
+from solver.approach.bounds.tolerances import CERTIFICATE_CELLS, CERTIFICATE_GAP
 from solver.approach.task.task import ApproachTask
-from solver.tolerances import CERTIFICATE_CELLS, CERTIFICATE_GAP
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,8 @@ from solver.approach.bounds.intervals import (
     shifted,
     widened,
 )
+from solver.approach.bounds.tolerances import ENCLOSURE_ROUNDING, ENCLOSURE_SINGULAR_WRIST
 from solver.compiled import kernel
-from solver.tolerances import ENCLOSURE_ROUNDING, ENCLOSURE_SINGULAR_WRIST
 
 
 @kernel

@@ -15,8 +15,8 @@ Source: R. E. Moore, Interval Analysis, 1966, chapters 4 and 6.
 
 import math
 
+from solver.approach.bounds.tolerances import ANGLE_ROUNDING_RAD
 from solver.compiled import kernel
-from solver.tolerances import ANGLE_ROUNDING_RAD
 
 _STEP = 2.0**-52
 _LIBRARY_STEPS = 4.0

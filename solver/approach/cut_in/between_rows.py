@@ -2,8 +2,8 @@
 
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
+from solver.approach.cut_in.tolerances import BETWEEN_ROWS_CUSHION, BETWEEN_ROWS_REACH
 from solver.compiled import kernel
-from solver.tolerances import BETWEEN_ROWS_CUSHION, BETWEEN_ROWS_REACH
 
 
 @kernel

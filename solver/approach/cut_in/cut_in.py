@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.approach.cut_in.between_rows import may_leave_between
+from solver.approach.cut_in.tolerances import DEVIATION_SAMPLES, EVEN_ROWS_M, EXCHANGE_ZOOMS
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.feasibility import retreat_from, retreat_from_many
 from solver.approach.task.task import ApproachTask
+from solver.approach.tolerances import EXCHANGE_DENSITY
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import forward_kinematics, many_poses, tool_centres
 from solver.kinematics.numerical import postures_behind
@@ -19,10 +21,6 @@ from solver.problem.options import Options
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import (
-    DEVIATION_SAMPLES,
-    EVEN_ROWS_M,
-    EXCHANGE_DENSITY,
-    EXCHANGE_ZOOMS,
     LEAST_REFINED_ROWS,
     LIMIT_EXCESS_RAD,
     TRAJECTORY_HALVINGS,

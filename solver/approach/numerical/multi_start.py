@@ -7,6 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.approach.numerical.tolerances import (
+    NUMERICAL_MOST_STEP,
+    NUMERICAL_PULL_SHARE,
+    NUMERICAL_PULL_STEPS,
+    NUMERICAL_REACH_STEPS,
+    NUMERICAL_REACHED,
+)
 from solver.approach.task.feasibility import tool_axes
 from solver.compiled import kernel
 from solver.kinematics.numerical import (
@@ -17,14 +24,7 @@ from solver.kinematics.numerical import (
     solve_damped,
 )
 from solver.robots.model import Array
-from solver.tolerances import (
-    NUMERICAL_DAMPING,
-    NUMERICAL_MOST_STEP,
-    NUMERICAL_PULL_SHARE,
-    NUMERICAL_PULL_STEPS,
-    NUMERICAL_REACH_STEPS,
-    NUMERICAL_REACHED,
-)
+from solver.tolerances import NUMERICAL_DAMPING
 
 
 class PoseFamily(NamedTuple):

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from solver.approach.numerical.multi_start import PoseFamily, from_starts
+from solver.approach.numerical.tolerances import NUMERICAL_STARTS
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics, jacobian
@@ -18,13 +19,7 @@ from solver.kinematics.numerical import (
 )
 from solver.problem.solution import Reason
 from solver.robots.model import Array, Robot, Tool
-from solver.tolerances import (
-    JOINT_RATE_RAD_M,
-    LIMIT_EXCESS_RAD,
-    NUMERICAL_STARTS,
-    POSITION_ERROR_M,
-    SAME_POSTURE_RAD,
-)
+from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_POSTURE_RAD
 
 _SQUARE: Final = 6
 

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from solver.approach.optimum.batch_search import optimise, paths_of_many
 from solver.approach.task.packed import jump_cosines
 from solver.approach.task.packing import packed_targets
+from solver.approach.tolerances import EXCHANGE_DENSITY
 from solver.problem.problem import Problem
 from solver.problem.solution import Arc
 from solver.robots.model import Array
-from solver.tolerances import BATCH_PART, EXCHANGE_DENSITY
+from solver.tolerances import BATCH_PART
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,10 @@ from solver.approach.arcs.turns import BESIDE, REACH, wrist_sign
 from solver.approach.optimum.effort_samples import EffortScratch, effort_scratch
 from solver.approach.optimum.search import least_effort
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
+from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
 from solver.compiled import inlined, kernel
 from solver.kinematics.arctangent import atan2
 from solver.robots.model import Array
-from solver.tolerances import ARC_CELLS, CELL_SWING_COSINE
 
 
 class CheapestScratch(NamedTuple):

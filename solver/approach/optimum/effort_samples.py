@@ -14,12 +14,12 @@ from solver.approach.arcs.turns import (
     turns_along_path,
     turns_at_angles,
 )
+from solver.approach.optimum.tolerances import EFFORT_CELL_RAD
 from solver.approach.task.feasibility import choose_turns
 from solver.approach.task.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
 from solver.robots.model import Array
-from solver.tolerances import EFFORT_CELL_RAD
 
 MOST_SAMPLES = 8 * math.ceil((2 * math.pi / EFFORT_CELL_RAD + 1) / 8)
 

@@ -19,17 +19,16 @@ from solver.approach.optimum.effort_samples import (
     sample_effort,
     spread,
 )
-from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, PackedTask
-from solver.compiled import kernel
-from solver.tolerances import (
-    ANGLE_STEP_RAD,
+from solver.approach.optimum.tolerances import (
     EFFORT_CELL_RAD,
     EFFORT_SMOOTH_RAD,
     EFFORT_SWING_RAD,
     FLAT_EFFORT,
-    LEAST_EFFORT_CELLS,
     SMOOTH_MINIMUM_RAD,
 )
+from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, PackedTask
+from solver.approach.tolerances import ANGLE_STEP_RAD, LEAST_EFFORT_CELLS
+from solver.compiled import kernel
 
 _SLOPE_SHARE = 1e-5
 _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0

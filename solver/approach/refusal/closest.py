@@ -16,9 +16,10 @@ import math
 import numpy as np
 
 from solver.approach.task.feasibility import limit_margin, posture, thinning, tool_axes, trace
+from solver.approach.tolerances import ANGLE_STEP_RAD
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import arm_turns, wrap
-from solver.tolerances import ANGLE_STEP_RAD, JOINT_RATE_RAD_M
+from solver.tolerances import JOINT_RATE_RAD_M
 
 FEASIBLE = 7
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0

@@ -8,14 +8,15 @@ import numpy as np
 from solver.approach.arcs.arcs import sample_angles, task_arcs
 from solver.approach.refusal.closest import FEASIBLE, closest_failure
 from solver.approach.refusal.nearest_change import nearest_angle, nearest_displacement
+from solver.approach.refusal.tolerances import DIAGNOSED_ANGLES
 from solver.approach.task.feasibility import trace
 from solver.approach.task.task import ApproachTask
+from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import displacement_margin
 from solver.approach.uncertainty.robust_search import robust_pieces
 from solver.approach.uncertainty.robustness import needed_margin
 from solver.problem.solution import Arc, Reason
 from solver.robots.model import Array
-from solver.tolerances import DIAGNOSED_ANGLES, UNCERTAINTY_DEVIATIONS
 
 _REACH = 6  # in the place of a joint's index
 

@@ -15,14 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.approach.refusal.penalty_programme import penalty_programme, reset, update
-from solver.approach.task.feasibility import CutInTask, limit_margin, posture, tool_axes, trace
-from solver.approach.uncertainty.displacement import rows_displacement_margin
-from solver.approach.uncertainty.sensitivity import joint_rates
-from solver.compiled import kernel
-from solver.kinematics.spherical_wrist import wrap
-from solver.robots.model import Array
-from solver.tolerances import (
-    JOINT_RATE_RAD_M,
+from solver.approach.refusal.tolerances import (
     NEAREST_ANGLE_SCALE_M,
     NEAREST_CONVERGED_M,
     NEAREST_FLATTEST,
@@ -41,6 +34,13 @@ from solver.tolerances import (
     NEAREST_STEPS,
     NEAREST_TRIAL_STEPS,
 )
+from solver.approach.task.feasibility import CutInTask, limit_margin, posture, tool_axes, trace
+from solver.approach.uncertainty.displacement import rows_displacement_margin
+from solver.approach.uncertainty.sensitivity import joint_rates
+from solver.compiled import kernel
+from solver.kinematics.spherical_wrist import wrap
+from solver.robots.model import Array
+from solver.tolerances import JOINT_RATE_RAD_M
 
 _KINDS = 13  # constraints of a row: both limits of six joints, and the reach
 

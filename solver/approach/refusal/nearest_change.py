@@ -9,6 +9,11 @@ import numpy as np
 from solver.approach.arcs.arcs import sample_angles, task_arcs
 from solver.approach.cut_in.cut_in import broken_limit
 from solver.approach.refusal.displacement_search import nearest_of_all
+from solver.approach.refusal.tolerances import (
+    NEAREST_ANGLES,
+    NEAREST_INSIDE_ARC_RAD,
+    NEAREST_SPARES_M,
+)
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.feasibility import trace
 from solver.approach.task.frame import signed_angle
@@ -16,7 +21,6 @@ from solver.approach.task.task import ApproachTask
 from solver.approach.uncertainty.robustness import bears_uncertainty, needed_margin
 from solver.problem.solution import Arc, Nearest
 from solver.robots.model import Array
-from solver.tolerances import NEAREST_ANGLES, NEAREST_INSIDE_ARC_RAD, NEAREST_SPARES_M
 
 ANGLE = "angle"
 DISPLACEMENT = "displacement"

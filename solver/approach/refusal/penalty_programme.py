@@ -4,8 +4,12 @@
 
 import numpy as np
 
+from solver.approach.refusal.tolerances import (
+    NEAREST_ANGLE_SCALE_M,
+    NEAREST_CONVERGED_M,
+    NEAREST_QP_SWEEPS,
+)
 from solver.compiled import kernel
-from solver.tolerances import NEAREST_ANGLE_SCALE_M, NEAREST_CONVERGED_M, NEAREST_QP_SWEEPS
 
 
 @kernel

@@ -11,8 +11,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from solver.approach.task.tolerances import PARALLEL_SINE
 from solver.robots.model import Array
-from solver.tolerances import PARALLEL_SINE
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ import numpy as np
 
 from solver.approach.task.feasibility import tool_axes, trace
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
-from solver.compiled import kernel
-from solver.tolerances import (
+from solver.approach.uncertainty.tolerances import (
     DISPLACEMENT_ROUNDS,
     DISPLACEMENT_STEP_RELATIVE,
     PROBE_HALVINGS,
@@ -22,6 +21,7 @@ from solver.tolerances import (
     SINGULAR_SINE,
     STRAIGHT_WRIST_PROBES,
 )
+from solver.compiled import kernel
 
 
 @kernel

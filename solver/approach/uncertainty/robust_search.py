@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from solver.approach.tolerances import ARC_SAMPLES, LEAST_EFFORT_CELLS
 from solver.approach.uncertainty.displacement import displacement_margin
+from solver.approach.uncertainty.tolerances import ROBUST_ANGLE_RAD
 from solver.compiled import kernel
-from solver.tolerances import ARC_SAMPLES, LEAST_EFFORT_CELLS, ROBUST_ANGLE_RAD
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.approach.task.task import ApproachTask
+from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import displacement_margin, rows_displacement_margins
 from solver.approach.uncertainty.robust_search import robust_pieces
 from solver.kinematics.families import rail_of
@@ -24,7 +25,6 @@ from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
-from solver.tolerances import UNCERTAINTY_DEVIATIONS
 
 
 def needed_margin(target: Target) -> float:

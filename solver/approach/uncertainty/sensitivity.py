@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 
+from solver.approach.uncertainty.tolerances import SINGULAR_SINE
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import one_branch, wrap
-from solver.tolerances import SINGULAR_SINE
 
 
 @kernel

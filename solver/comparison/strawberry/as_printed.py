@@ -22,8 +22,8 @@ from solver.comparison.strawberry.answer import Answer
 from solver.comparison.strawberry.index import energy_index
 from solver.comparison.strawberry.mechanism import Mechanism, Point, Posture, Span, posture_at
 from solver.comparison.strawberry.semi_analytic import pieces, root_between, slopes_of
+from solver.comparison.strawberry.tolerances import PRINTED_SAMPLES
 from solver.problem.solution import Reason
-from solver.tolerances import PRINTED_SAMPLES
 
 
 def printed_box(mechanism: Mechanism) -> tuple[Span, Span, Span]:

@@ -20,15 +20,14 @@ from solver.comparison.strawberry.answer import Answer
 from solver.comparison.strawberry.index import energy_index
 from solver.comparison.strawberry.mechanism import Mechanism, Point, Posture, posture_at
 from solver.comparison.strawberry.semi_analytic import solve_ssas
-from solver.problem.solution import Reason
-from solver.robots.model import Array
-from solver.tolerances import (
+from solver.comparison.strawberry.tolerances import (
     INDEX_ROUNDING_J,
     MECHANISM_NLP_BARRIER,
     MECHANISM_NLP_TOLERANCE,
-    NLP_BOUND_PUSH,
-    NLP_ITERATIONS,
 )
+from solver.problem.solution import Reason
+from solver.robots.model import Array
+from solver.tolerances import NLP_BOUND_PUSH, NLP_ITERATIONS
 
 
 def solve_ncos_cold(mechanism: Mechanism, target: Point) -> Answer | Reason:

@@ -22,8 +22,12 @@ from solver.comparison.strawberry.angle_choice import (
 from solver.comparison.strawberry.answer import Answer
 from solver.comparison.strawberry.index import bent_arm_n, energy_index
 from solver.comparison.strawberry.mechanism import Mechanism, Point, Posture, Span, posture_at
+from solver.comparison.strawberry.tolerances import (
+    STATIONARY_CELLS,
+    STATIONARY_INSET,
+    STATIONARY_RAD,
+)
 from solver.problem.solution import Reason
-from solver.tolerances import STATIONARY_CELLS, STATIONARY_INSET, STATIONARY_RAD
 
 
 def solve_ssas(mechanism: Mechanism, target: Point) -> Answer | Reason:

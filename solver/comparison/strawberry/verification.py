@@ -11,12 +11,8 @@ from solver.comparison.strawberry.mechanism import (
     Point,
     forward_kinematics,
 )
-from solver.tolerances import (
-    EFFORT_ERROR_RELATIVE,
-    LIMIT_EXCESS_M,
-    LIMIT_EXCESS_RAD,
-    POSITION_ERROR_M,
-)
+from solver.comparison.strawberry.tolerances import LIMIT_EXCESS_M
+from solver.tolerances import EFFORT_ERROR_RELATIVE, LIMIT_EXCESS_RAD, POSITION_ERROR_M
 from solver.verification.residual import Residual, Verification
 
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from solver.approach.task.relaxation import Placement, shortened
 from solver.approach.task.task import ApproachTask
 from solver.methods.nlp.formulation import Programme, Shape
+from solver.methods.nlp.tolerances import NLP_LIMIT_INSET
 from solver.robots.model import Array
-from solver.tolerances import NLP_LIMIT_INSET
 
 
 @dataclass(frozen=True)

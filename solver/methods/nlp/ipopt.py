@@ -8,8 +8,9 @@ import numpy as np
 
 from solver.methods.nlp.formulation import Shape, build_programme
 from solver.methods.nlp.instance import Instance, ProgrammeResult
+from solver.methods.nlp.tolerances import NLP_BARRIER, NLP_TOLERANCE
 from solver.robots.model import Robot
-from solver.tolerances import NLP_BARRIER, NLP_BOUND_PUSH, NLP_ITERATIONS, NLP_TOLERANCE
+from solver.tolerances import NLP_BOUND_PUSH, NLP_ITERATIONS
 
 
 @lru_cache(maxsize=64)

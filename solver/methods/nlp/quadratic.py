@@ -8,8 +8,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from solver.methods.nlp.tolerances import (
+    OSQP_ITERATIONS,
+    OSQP_STEP,
+    OSQP_TOLERANCE,
+    PIQP_ROOM,
+    QP_TOLERANCE,
+)
 from solver.robots.model import Array
-from solver.tolerances import OSQP_ITERATIONS, OSQP_STEP, OSQP_TOLERANCE, PIQP_ROOM, QP_TOLERANCE
 
 _SETTINGS: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {

@@ -13,14 +13,9 @@ from solver.kinematics.spherical_wrist import inverse_kinematics
 from solver.methods.nlp.backends import solve_instance
 from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
+from solver.methods.nlp.tolerances import RELAXED_ROUNDS
 from solver.robots.model import Array
-from solver.tolerances import (
-    JOINT_RATE_RAD_M,
-    LIMIT_EXCESS_RAD,
-    POSITION_ERROR_M,
-    RELAXED_ROUNDS,
-    SAME_BRANCH_RAD,
-)
+from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_BRANCH_RAD
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ import numpy as np
 from solver.methods.nlp.formulation import Shape, build_programme
 from solver.methods.nlp.instance import Instance, ProgrammeResult
 from solver.methods.nlp.quadratic import QuadraticAnswer, solve_quadratic
-from solver.robots.model import Array, Robot
-from solver.tolerances import (
+from solver.methods.nlp.tolerances import (
     NLP_TOLERANCE,
     SQP_CORRECTIONS,
     SQP_CURVATURE,
@@ -38,6 +37,7 @@ from solver.tolerances import (
     SQP_SLACK_CURVATURE,
     SQP_STEP,
 )
+from solver.robots.model import Array, Robot
 
 
 @dataclass(frozen=True)

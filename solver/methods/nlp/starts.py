@@ -18,8 +18,9 @@ from solver.approach.task.relaxation import placement, rotation
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.nlp.instance import Start
+from solver.methods.nlp.tolerances import RELAXED_SAMPLES, RELAXED_SWINGS
 from solver.robots.model import Array
-from solver.tolerances import NEAR_FEASIBLE_RAD, RELAXED_SAMPLES, RELAXED_SWINGS
+from solver.tolerances import NEAR_FEASIBLE_RAD
 
 
 @dataclass(frozen=True)

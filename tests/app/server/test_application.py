@@ -21,16 +21,12 @@ from solver.comparison.run import MAXIMUM_REPEATS, MOST_REPEATS
 from solver.comparison.summary import FAILURE_CHARGE
 from solver.frames.checks import FURTHEST_M
 from solver.frames.point_pairs import LEAST_PAIRS, MOST_PAIRS
+from solver.frames.tolerances import SHORTEST_DIRECTION
 from solver.frames.transforms import ORTHONORMAL, UNIT_QUATERNION
 from solver.problem.options import MOST_WEIGHT, RANGES
 from solver.problem.solution import REASON_CODES
 from solver.problem.thinning import LONGEST_SEGMENT_M
-from solver.tolerances import (
-    LARGEST_STD_REACHES,
-    SAME_POINT_M,
-    SHORTEST_DIRECTION,
-    UNIT_MISTAKE_REACHES,
-)
+from solver.problem.tolerances import LARGEST_STD_REACHES, SAME_POINT_M, UNIT_MISTAKE_REACHES
 
 Schema = dict[str, Any]
 

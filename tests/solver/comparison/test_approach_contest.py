@@ -20,8 +20,12 @@ from solver.exceptions import UnknownEntrant
 from solver.methods.registry import METHODS
 from solver.methods.semi_analytic import solve_ssas
 from solver.problem.solution import REASON_CODES, Reason
-from solver.tolerances import AS_CHEAP_RELATIVE, AXIS_ERROR_RAD, POSITION_ERROR_M
+from solver.tolerances import AXIS_ERROR_RAD, POSITION_ERROR_M
 from tests.solver.problems import data_set_3, random_targets
+
+AS_CHEAP_RELATIVE: Final = 1e-7
+"""How much dearer than another method's an effort may be and still count as the same, as a share:
+an optimum is found to about 1e-9, and efforts of a few radians are recomputed to 1e-12."""
 
 
 def contest_of(problem: Problem, *variants: Variant) -> Contest:

@@ -21,9 +21,9 @@ from solver import (
     verify,
     verify_plan,
 )
+from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.methods.registry import METHODS
-from solver.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.verification.verify import judge
 from tests.solver.problems import data_set_3, random_targets, targets_for
 

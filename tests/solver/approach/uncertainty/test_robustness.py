@@ -9,12 +9,12 @@ import pytest
 from solver import Options, Problem, Robot, Target, load_robot, solve, verify_plan
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.task.task import ApproachTask, approach_task
+from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import displacement_margin
 from solver.approach.uncertainty.robustness import needed_margin, path_displacement_margin
 from solver.kinematics.spherical_wrist import inverse_kinematics
 from solver.problem.solution import Arc
 from solver.robots.model import Array
-from solver.tolerances import UNCERTAINTY_DEVIATIONS
 from tests.solver.kinematics.arms import arms
 from tests.solver.problems import random_targets
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from solver.comparison.strawberry.analytic import outside_box, slide_span, solve_as, workspace_box
 from solver.comparison.strawberry.index import energy_index
 from solver.comparison.strawberry.mechanism import Point, Posture, forward_kinematics, posture_at
+from solver.comparison.strawberry.tolerances import LIMIT_EXCESS_M
 from solver.comparison.strawberry.verification import verify_answer
 from solver.problem.solution import Reason
-from solver.tolerances import LIMIT_EXCESS_M
 from tests.solver.comparison.strawberry.places import (
     MECHANISM,
     TARGETS,

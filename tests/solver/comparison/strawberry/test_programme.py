@@ -11,9 +11,9 @@ from solver.comparison.strawberry.mechanism import Point, Posture, forward_kinem
 from solver.comparison.strawberry.programme import solve_ncos, solve_ncos_cold, solve_programme
 from solver.comparison.strawberry.semi_analytic import solve_ssas
 from solver.comparison.strawberry.table_3 import PLANT_CENTRE_M, PLANT_RADIUS_M, Row, table_3
+from solver.comparison.strawberry.tolerances import INDEX_ROUNDING_J
 from solver.comparison.strawberry.verification import verify_answer
 from solver.problem.solution import Reason
-from solver.tolerances import INDEX_ROUNDING_J
 from tests.solver.comparison.strawberry.places import MECHANISM, TARGETS, answered, near, reachable
 
 COLUMN_ERROR = 5e-4

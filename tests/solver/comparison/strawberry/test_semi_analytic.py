@@ -10,9 +10,10 @@ from solver.comparison.strawberry.angle_choice import CASE_1, CASE_2, STRAIGHT, 
 from solver.comparison.strawberry.index import energy_index, friction_loss, potential_rise
 from solver.comparison.strawberry.mechanism import Point, Posture, forward_kinematics, posture_at
 from solver.comparison.strawberry.semi_analytic import pieces, slope_of, slopes_of, solve_ssas
+from solver.comparison.strawberry.tolerances import INDEX_ROUNDING_J
 from solver.comparison.strawberry.verification import verify_answer
 from solver.problem.solution import Reason
-from solver.tolerances import INDEX_ROUNDING_J, LIMIT_EXCESS_RAD
+from solver.tolerances import LIMIT_EXCESS_RAD
 from tests.solver.comparison.strawberry.places import MECHANISM, TARGETS, answered, near, reachable
 
 BETAS = np.linspace(*MECHANISM.beta, 4001).tolist()

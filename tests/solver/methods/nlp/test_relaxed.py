@@ -12,8 +12,9 @@ from solver.approach.task.task import approach_task
 from solver.methods.nlp import relaxed
 from solver.methods.nlp.relaxed import solve_relaxed
 from solver.methods.nlp.starts import corner_tasks, start_at
+from solver.methods.nlp.tolerances import RELAXED_SWINGS
 from solver.methods.semi_analytic import solve_ssas
-from solver.tolerances import LIMIT_EXCESS_RAD, RELAXED_SWINGS
+from solver.tolerances import LIMIT_EXCESS_RAD
 from tests.solver.problems import random_targets
 
 

@@ -1,0 +1,28 @@
+"""Every tolerance of this room, with its unit and its reason."""
+
+from typing import Final
+
+ARC_END_RAD: Final = 1e-15
+"""Width to which the ends of an arc are refined [rad]; the feasible side is kept. At the edge of
+reach joints turn with the square root of the angle: 1e-12 would leave 1e-6 of the effort there."""
+
+CLEAR_MARGIN: Final = 0.1
+"""Margin (a difference of cosines, or metres) at both ends of a cell above which a joint is not
+looked at in each row: it would have to turn back within 5 degrees of approach angle."""
+
+ROUND_TURN_COSINE: Final = -0.6
+"""Cosine of half a joint's range below which it can be inside its limits at both ends of a cell
+and have passed what it may not in between, without turning by CELL_SWING_COSINE."""
+
+NARROW_JUMP_RAD: Final = 3e-3
+"""Width to which cells with a jump at both ends are halved before slopes are believed [rad]."""
+
+STEEPEST_JUMP: Final = 4.0
+"""How fast the margin of a jump (a difference of cosines) may rise with the angle [1/rad]; where it
+would have to rise faster between the ends of a cell, the whole cell jumps."""
+
+NARROWEST_CELL_RAD: Final = 1e-6
+"""Cells are not halved further [rad]: a hundredth of the narrowest arc that may not be missed."""
+
+EXTREME_ANGLE_RAD: Final = 1e-7
+"""Width to which an extremum of a margin is bracketed [rad]; the value is then good to 1e-14."""

@@ -1,0 +1,6 @@
+"""Every tolerance of this room, with its unit and its reason."""
+
+from typing import Final
+
+PARALLEL_SINE: Final = 1e-6
+"""|b x p| / |p| below which "straight out from the base" defines no zero of the angle."""

@@ -1,0 +1,30 @@
+"""Every tolerance of this room, with its unit and its reason."""
+
+from typing import Final
+
+# --- Feasible arcs and search -------------------------------------------------------------------
+ARC_SAMPLES: Final = 720
+"""Approach angles at which the feasibility margin is sampled before arcs are refined (0.5 deg)."""
+
+ARC_CELLS: Final = 72
+"""Cells of one turn in which arcs are searched (5 deg). A single joint's margin is smooth in the
+angle, with a few extrema a turn; a cell must not hold two of them."""
+
+CELL_SWING_COSINE: Final = 0.7
+"""Cosine of the turn of a joint from cell to cell (0.8 rad) from which the cell is halved: beside a
+straight wrist joints 4 and 6 turn by half a turn in an arbitrarily short way."""
+
+ANGLE_STEP_RAD: Final = 1e-10
+"""Width to which a one-dimensional optimum in the approach angle is bracketed [rad]."""
+
+EXCHANGE_DENSITY: Final = 8
+"""Postures looked at between two rows of the cut-in when such a posture is searched."""
+
+LEAST_EFFORT_CELLS: Final = 4
+"""Cells of the shortest arc."""
+
+# --- Uncertain targets --------------------------------------------------------------------------
+UNCERTAINTY_DEVIATIONS: Final = 3.0
+"""Standard deviations that a target may be away from where it was seen. The nearest limit is all
+but flat at that scale: 99.87 % of normally distributed targets are on its feasible side, and 97 %
+in the whole ball."""

@@ -1,0 +1,30 @@
+"""Every tolerance of this room, with its unit and its reason."""
+
+from typing import Final
+
+# --- Displaced targets --------------------------------------------------------------------------
+SINGULAR_SINE: Final = 1e-6
+"""Sine of the wrist's, elbow's or waist's singular angle below which rates are those at this sine:
+joints turn by 1e6 times the tool's turn there, and no division by zero."""
+
+DISPLACEMENT_ROUNDS: Final = 12
+"""Linearisations at most in the search for the nearest point of a limit; four are usual."""
+
+DISPLACEMENT_STEP_RELATIVE: Final = 1e-6
+"""Relative change of that point below which it is found."""
+
+SCREENED_DISTANCES: Final = 2.5
+"""Limits whose first-order distance is above this many times the smallest exact one are not looked
+at more closely."""
+
+STRAIGHT_WRIST_PROBES: Final = 12
+"""Directions around a straight wrist in which limits of joints 4 and 6 are looked for: 30 degrees,
+a tenth of what these joints turn in all."""
+
+PROBE_HALVINGS: Final = 12
+"""Halvings of the way to a broken limit before the nearest point of the limit is looked for."""
+
+# --- Uncertain targets --------------------------------------------------------------------------
+ROBUST_ANGLE_RAD: Final = 1e-9
+"""Width to which the ends of arcs that bear an uncertainty are bisected [rad]. The margin changes
+by less than 1e-8 m within it; the verifier allows POSITION_ERROR_M."""
