@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 import pytest
