@@ -13,7 +13,7 @@ from tests.contracts.test_bus import REPOSITORY, servo_bus
 from tests.hardware.parts import Bench, make_bench
 
 TRUE_DEG = "10,60,-40,20,30,-50"
-THESIS = REPOSITORY / "hardware" / "calibrations" / "tabletop_thesis.toml"
+THESIS = REPOSITORY / "hardware" / "servos" / "calibrations" / "tabletop_thesis.toml"
 
 
 @pytest.fixture

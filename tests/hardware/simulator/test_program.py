@@ -91,7 +91,7 @@ def test_it_turns_faster_than_the_wall_clock_when_told_so(start: Start) -> None:
 def test_starts_where_it_is_told_to_with_a_calibration(
     start: Start, tabletop: Robot, tmp_path: Path
 ) -> None:
-    calibration = REPOSITORY / "hardware" / "calibrations" / "tabletop_thesis.toml"
+    calibration = REPOSITORY / "hardware" / "servos" / "calibrations" / "tabletop_thesis.toml"
     process, device = start(
         "--robot=tabletop-sim",
         "--joints-deg=10,20,-30,40,50,-60",
