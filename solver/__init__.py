@@ -10,82 +10,76 @@
 Metres, radians and seconds in the robot's base frame throughout.
 """
 
-from solver.approach.arcs.of_problem import feasible_arcs
-from solver.exceptions import (
-    Fault,
-    InvalidProblem,
-    InvalidRobot,
-    SolverError,
-    UnknownRobot,
-    UnsupportedKinematics,
-)
-from solver.planner.solve import solve
-from solver.problem.options import Options
-from solver.problem.problem import Problem
-from solver.problem.solution import (
-    Approach,
-    Arc,
-    Nearest,
-    Plan,
-    Reason,
-    Segment,
-    SolverReport,
-    Trajectory,
-    Transfer,
-)
-from solver.problem.targets import Target
-from solver.problem.thinning import (
-    Blossom,
-    BlossomBranch,
-    PlacedBlossom,
-    ThinningSelection,
-    select_blossoms,
-)
-from solver.robots.model import Joint, Link, Robot, Tool, load_robot, parse_robot, robot_names
-from solver.robots.toml_writing import robot_to_toml
-from solver.urdf.reading import robot_from_urdf
-from solver.urdf.writing import robot_to_urdf
-from solver.verification.residual import Residual, Verification
-from solver.verification.verify import verify, verify_plan
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, Final
 
-__all__ = [
-    "Approach",
-    "Arc",
-    "Blossom",
-    "BlossomBranch",
-    "Fault",
-    "InvalidProblem",
-    "InvalidRobot",
-    "Joint",
-    "Link",
-    "Nearest",
-    "Options",
-    "PlacedBlossom",
-    "Plan",
-    "Problem",
-    "Reason",
-    "Residual",
-    "Robot",
-    "Segment",
-    "SolverError",
-    "SolverReport",
-    "Target",
-    "ThinningSelection",
-    "Tool",
-    "Trajectory",
-    "Transfer",
-    "UnknownRobot",
-    "UnsupportedKinematics",
-    "Verification",
-    "feasible_arcs",
-    "load_robot",
-    "parse_robot",
-    "robot_from_urdf",
-    "robot_names",
-    "robot_to_toml",
-    "robot_to_urdf",
-    "select_blossoms",
-    "solve",
-    "verify",
-    "verify_plan",
-]
+_HOMES: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "solver.approach.arcs.of_problem": ("feasible_arcs",),
+        "solver.exceptions": (
+            "Fault",
+            "InvalidProblem",
+            "InvalidRobot",
+            "SolverError",
+            "UnknownRobot",
+            "UnsupportedKinematics",
+        ),
+        "solver.planner.solve": ("solve",),
+        "solver.problem.options": ("Options",),
+        "solver.problem.problem": ("Problem",),
+        "solver.problem.solution": (
+            "Approach",
+            "Arc",
+            "Nearest",
+            "Plan",
+            "Reason",
+            "Segment",
+            "SolverReport",
+            "Trajectory",
+            "Transfer",
+        ),
+        "solver.problem.targets": ("Target",),
+        "solver.problem.thinning": (
+            "Blossom",
+            "BlossomBranch",
+            "PlacedBlossom",
+            "ThinningSelection",
+            "select_blossoms",
+        ),
+        "solver.robots.model": (
+            "Joint",
+            "Link",
+            "Robot",
+            "Tool",
+            "load_robot",
+            "parse_robot",
+            "robot_names",
+        ),
+        "solver.robots.toml_writing": ("robot_to_toml",),
+        "solver.urdf.reading": ("robot_from_urdf",),
+        "solver.urdf.writing": ("robot_to_urdf",),
+        "solver.verification.residual": ("Residual", "Verification"),
+        "solver.verification.verify": ("verify", "verify_plan"),
+    }
+)
+"""Where each public name is defined. It is imported when it is asked for, since whoever needs the
+model of a robot, as a worker does, should not wait for compilers and optimisers; `__init__.pyi`
+says the same to type checkers."""
+
+_MODULES: Final = MappingProxyType(
+    {name: module for module, names in _HOMES.items() for name in names}
+)
+__all__ = sorted(_MODULES)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_MODULES[name]), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_MODULES})
