@@ -6,22 +6,32 @@ BIN := $(VENV)/bin
 BENCH_VENV := .venv-bench
 BENCH_BIN := $(BENCH_VENV)/bin
 
-.PHONY: demo test check serve setup lock pictures openapi reports bench bench-quick bench-page bench-service clean
+.PHONY: demo test check postgresql serve setup lock pictures openapi reports bench bench-quick bench-page bench-service clean
 
 demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
 
-test: $(VENV)/dev.stamp          ## set up, then every check and every test
+ifdef ONLY
+test: $(VENV)/dev.stamp postgresql ## some tests: make test ONLY=tests/app/store, or ONLY=solver/motion
+	@sh scripts/run_tests.sh $(BIN) $(ONLY)
+else
+test: check postgresql           ## set up, then every check and every test
+	@sh scripts/run_tests.sh $(BIN)
+endif
+
+check: $(VENV)/dev.stamp         ## format, lint, types, floors
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	@sh scripts/run_tests.sh $(BIN)
+
+postgresql:                      # APT=1 lets it be installed
+	@APT=$(APT) sh scripts/postgresql.sh
 
 serve: $(VENV)/run.stamp         ## the service, on loopback
 	@$(BIN)/prunus serve
 
-setup: $(VENV)/dev.stamp         ## the environment alone
+setup: $(VENV)/dev.stamp postgresql ## the environment alone
 
 pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
 	$(BIN)/prunus demo --output build/pictures
@@ -52,15 +62,15 @@ bench-page: $(BENCH_VENV)/bench.stamp ## docs/benchmarks.md and its plots, from 
 	$(BENCH_BIN)/python -m bench.page
 
 $(VENV)/run.stamp: requirements/run.lock pyproject.toml scripts/setup.sh
-	@sh scripts/setup.sh $(VENV) requirements/run.lock
+	@APT=$(APT) sh scripts/setup.sh $(VENV) requirements/run.lock
 	@touch $@
 
 $(VENV)/dev.stamp: requirements/dev.lock pyproject.toml scripts/setup.sh
-	@sh scripts/setup.sh $(VENV) requirements/dev.lock
+	@APT=$(APT) sh scripts/setup.sh $(VENV) requirements/dev.lock
 	@touch $@ $(VENV)/run.stamp
 
 $(BENCH_VENV)/bench.stamp: requirements/bench.lock pyproject.toml scripts/setup.sh
-	@sh scripts/setup.sh $(BENCH_VENV) requirements/bench.lock
+	@APT=$(APT) sh scripts/setup.sh $(BENCH_VENV) requirements/bench.lock
 	@touch $@
 
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-annotate \

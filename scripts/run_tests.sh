@@ -1,17 +1,38 @@
 #!/bin/sh
-# Every test: run_tests.sh FOLDER, of pytest. Two cores, so what only waits shares them with what
-# only computes: tests that keep time with clocks run one by one, and the solver's, which keep none,
-# beside them at the lowest priority. A third of those that share leaves no core idle.
+# Tests: run_tests.sh FOLDER_OF_PYTEST [PLACE]...; without a place all of them. A place is a file or
+# folder of tests, or one of the sources, whose tests lie in the same place under tests/.
+#
+# Two cores, so what mostly waits shares them with what computes: tests that keep time with clocks
+# run one by one, and beside them all others, two at a time and at a low priority. It is not the
+# lowest, so that jobs, whose processes are nicer than their service, get their share among them.
 set -u
 pytest=$1/pytest
-computing=$(mktemp)
-trap 'rm -f "$computing"' EXIT
+shift
+
+tests_of() {
+    case $1 in
+        tests | tests/*) echo "$1" ;;
+        *.py) echo "tests/$(dirname "$1")/test_$(basename "$1")" ;;
+        *) echo "tests/$1" ;;
+    esac
+}
+
+if [ $# -gt 0 ]; then
+    for place; do
+        set -- "$@" "$(tests_of "${place%/}")"
+        shift
+    done
+    exec "$pytest" "$@"
+fi
+
+shared=$(mktemp)
+trap 'rm -f "$shared"' EXIT
 failed=0
 
-"$pytest" -n 3 --dist loadfile -m "not alone" tests/app tests/docs tests/contracts || failed=1
-nice -n 19 "$pytest" -n 2 tests/solver tests/bench >"$computing" 2>&1 &
-"$pytest" -m alone tests/app tests/docs || failed=1
+nice -n 14 "$pytest" -n 2 --dist loadfile --no-loadscope-reorder -m "not alone" \
+    tests --ignore tests/hardware >"$shared" 2>&1 &
+"$pytest" -m alone tests --ignore tests/hardware || failed=1
 "$pytest" tests/hardware || failed=1
 wait $! || failed=1
-cat "$computing"
+cat "$shared"
 exit $failed

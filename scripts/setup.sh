@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds a virtual environment from a hashed lock file: setup.sh VENV LOCK
-# Needs Python 3.11, 3.12 or 3.13; PYTHON may name the interpreter.
+# Needs Python 3.11, 3.12 or 3.13; PYTHON may name the interpreter. Debian packages that are missing
+# are installed with APT=1 only.
 set -eu
 venv=$1
 lock=$2
@@ -23,37 +24,18 @@ find_python() {
 ensure_venv_module() {
     "$python" -c 'import ensurepip, venv' 2>/dev/null && return
     package="python$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')-venv"
-    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+    if [ "${APT:-}" = 1 ]; then
         echo "== installing $package (Python's venv module is missing)"
         apt-get update -q && apt-get install -y -q --no-install-recommends "$package"
     else
         echo "Python's venv module is missing. On Debian, as root: apt-get install $package" >&2
+        echo "Or let it be installed: make APT=1 ..." >&2
         exit 1
     fi
 }
 
-# The tests run the store against a real server. They start one of their own, so the package must
-# not make and start one too, which it does unless told not to.
-ensure_postgresql() {
-    ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 && return
-    command -v initdb >/dev/null && return
-    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-        echo "== installing postgresql (the tests start a server of their own)"
-        export DEBIAN_FRONTEND=noninteractive
-        if apt-get update -q && apt-get install -y -q --no-install-recommends postgresql-common; then
-            settings=/etc/postgresql-common/createcluster.conf
-            sed -i '/^#*create_main_cluster/d' "$settings"
-            echo "create_main_cluster = false" >>"$settings"
-            apt-get install -y -q --no-install-recommends postgresql && return
-        fi
-    fi
-    echo "== PostgreSQL is not installed: its tests will be SKIPPED." >&2
-    echo "   On Debian, as root: apt-get install postgresql" >&2
-}
-
 python=$(find_python)
 ensure_venv_module
-case $lock in */dev.lock) ensure_postgresql ;; esac
 if ! fits "$venv/bin/python"; then
     echo "== creating $venv with $("$python" --version)"
     rm -rf "$venv"
@@ -62,5 +44,5 @@ fi
 echo "== installing $(grep -c '==' "$lock") locked packages from $lock"
 "$venv/bin/python" -m pip install --disable-pip-version-check --require-hashes -r "$lock"
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-echo "== compiling the kernels (some minutes, once for each version and processor)"
+echo "== compiling the kernels: some minutes, once for each version and processor"
 "$venv/bin/python" -m solver.warm_up

@@ -4,13 +4,21 @@ Run as `python -m solver.warm_up` at set-up; kernels stay compiled on disk.
 """
 
 import multiprocessing
+import os
+import sys
+import time
 from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, wait
 from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
+from solver import compiled
 from solver.problem.targets import Target
 from solver.robots.model import Robot
+
+TELL_S: Final = 10.0
+"""How often it is told how far the compilation is [s]: people give up on a minute of silence."""
 
 
 def warm_up() -> None:
@@ -80,11 +88,27 @@ PARTS: Final[Mapping[str, Callable[[], None]]] = {
 
 
 def compile_on_both_cores() -> None:
-    """Every part in a process of its own, two at a time: compilation uses one core."""
+    """Every part in a process of its own, two at a time: compilation uses one core.
+
+    Tells on standard output how far it is.
+    """
+    began, before = time.monotonic(), compiled_kernels()
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(max_workers=2, mp_context=context) as pool:
-        for done in [pool.submit(_run, part) for part in PARTS]:
-            done.result()
+        working = {pool.submit(_run, part) for part in PARTS}
+        while working:
+            done, working = wait(working, timeout=TELL_S)
+            for part in done:
+                part.result()
+            count, elapsed_s = compiled_kernels() - before, time.monotonic() - began
+            sys.stdout.write(f"   {count} kernels compiled in {elapsed_s:.0f} s\n")
+            sys.stdout.flush()
+
+
+def compiled_kernels() -> int:
+    """How many kernels are kept on disk, each as often as it was compiled for other arguments."""
+    folder = os.environ.get("NUMBA_CACHE_DIR") or compiled.cache_folder()
+    return len(list(Path(folder).rglob("*.nbc")))
 
 
 def _run(part: str) -> None:

@@ -34,7 +34,9 @@ def postgresql() -> Iterator[PostgresqlServer]:
     """A PostgreSQL server that tests may also stop and start; it must run when they end."""
     programs = find_programs()
     if programs is None:
-        pytest.skip(f"PostgreSQL is not installed. {INSTALL}")
+        # Where every change is tested nothing may go untested.
+        tell = pytest.fail if os.environ.get("CI") == "true" else pytest.skip
+        tell(f"PostgreSQL is not installed. {INSTALL}")
     server = PostgresqlServer.create(programs)
     yield server
     server.remove()
@@ -44,6 +46,11 @@ def postgresql() -> Iterator[PostgresqlServer]:
 def postgresql_url(postgresql: PostgresqlServer) -> str:
     """An empty PostgreSQL database of the test's own."""
     return postgresql.new_database()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What takes long begins first; else the order stays."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
