@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 BENCH_VENV := .venv-bench
 BENCH_BIN := $(BENCH_VENV)/bin
 
-.PHONY: demo test check postgresql serve setup lock pictures openapi reports bench bench-quick bench-page bench-service clean
+.PHONY: demo test check postgresql serve setup lock docs pictures openapi reports bench bench-quick bench-page bench-service clean
 
 demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
@@ -38,11 +38,14 @@ pictures: $(VENV)/run.stamp      ## README's pictures and table, from the demo
 	cp build/pictures/arm.png build/pictures/effort.png build/pictures/table.md docs/pictures/
 	$(BIN)/python -m app.reports.drawings.weights docs/pictures/weights.png
 	$(BIN)/python -m app.reports.drawings.strawberry docs/pictures/strawberry.png
-	$(BIN)/python scripts/update_readme.py
+	$(BIN)/python -m scripts.update_readme
 
 reports: $(VENV)/run.stamp       ## the example reports in docs/reports, measured anew on a quiet machine
 	$(BIN)/prunus compare strawberry --output docs/reports/strawberry
 	$(BIN)/prunus compare data-set-3 --output docs/reports/data-set-3
+
+docs: $(VENV)/dev.stamp          ## drawing and tables of rooms, index of decisions, from the code
+	$(BIN)/python -m scripts.update_docs
 
 openapi: $(VENV)/run.stamp       ## openapi/openapi.json, from the code
 	$(BIN)/prunus export-openapi -o openapi/openapi.json

@@ -1,4 +1,4 @@
-"""The side of the servos: bus, mapping, worker, and a simulated bus that speaks their bytes.
+"""The side of the servos: the worker, what it drives, and a simulation that speaks its bytes.
 
 Ticks (servo units) exist in this package only; joint vectors are radians in the model's order.
 """

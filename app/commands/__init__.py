@@ -1,1 +1,1 @@
-"""What people type: prunus and its subcommands, a file each."""
+"""What people type: `prunus` and its subcommands, a file each."""

@@ -1,1 +1,1 @@
-"""In front of every route: who may ask, how much, how long, and what is logged of it."""
+"""In front of every route: tokens, origins, sizes, times, rates, and the log of requests."""

@@ -1,1 +1,1 @@
-"""Comparisons for people and programs: JSON, CSV, Markdown, HTML and pictures."""
+"""Comparisons for people and programs: JSON, CSV, Markdown, HTML, and their folder."""

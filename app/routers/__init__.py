@@ -1,1 +1,1 @@
-"""HTTP routes, one module a resource."""
+"""HTTP routes, a file a resource: they read a request, ask a service, form the answer."""

@@ -1,1 +1,1 @@
-"""Pydantic models of the wire, used at the edge only."""
+"""The wire: pydantic models of requests and answers, a file a resource."""

@@ -1,1 +1,1 @@
-"""The application put together and served: routes, guards, services, their beginning and end."""
+"""The application put together and served: its beginning, its connections and its end."""

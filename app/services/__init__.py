@@ -1,1 +1,1 @@
-"""What the routes and the command line do, without HTTP."""
+"""What routes and commands ask for, without HTTP: a room for each thing served."""

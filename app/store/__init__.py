@@ -1,4 +1,4 @@
-"""What persists: plans and jobs, executions, comparisons, frames, keys and tokens."""
+"""What persists, a file a table: plans, jobs, executions, comparisons, frames, keys, tokens."""
 
 from app.store.comparisons import ComparisonStore
 from app.store.database import open_engine

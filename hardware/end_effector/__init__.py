@@ -1,1 +1,1 @@
-"""The end-effector: what switches it, and the process that owns its output."""
+"""The end-effectors, a row each, and the guard process that owns their output."""

@@ -1,1 +1,1 @@
-"""Servos as data: control tables, which servo drives which joint, calibrations, ticks and units."""
+"""Servos as data, and the one place that knows both ticks and radians."""

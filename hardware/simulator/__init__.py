@@ -1,4 +1,4 @@
-"""Simulated servos that speak Protocol 1.0 byte for byte: docs/simulated_bus.md."""
+"""Simulated servos that speak Protocol 1.0 byte for byte, with faults, a row each."""
 
 from hardware.simulator.bus import SimulatedBus, simulated_arm
 from hardware.simulator.servo import Clock, SimulatedServo

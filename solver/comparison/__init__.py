@@ -1,1 +1,1 @@
-"""Methods side by side on the same targets: scenarios, how they are run, what is told of them."""
+"""Methods side by side on the same targets: contests, how they are run, what they found."""

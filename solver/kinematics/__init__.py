@@ -1,1 +1,1 @@
-"""Forward kinematics, Jacobian, and the closed-form inverse for spherical wrists."""
+"""Forward and inverse kinematics, in closed form and numerical; gravity and inertia."""

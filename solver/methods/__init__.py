@@ -1,1 +1,1 @@
-"""The methods: one file each, one row each in `solver.methods.registry`."""
+"""The methods: a file each, and a row each in `solver.methods.registry`."""

@@ -1,1 +1,1 @@
-"""Timed motion: how a path becomes a trajectory inside the speed limits."""
+"""Motion in time: how a path becomes a trajectory inside the speed limits."""

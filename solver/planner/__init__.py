@@ -1,1 +1,1 @@
-"""A problem solved: one target, many at once, a batch in parts, each answer built and verified."""
+"""A problem solved as a whole: one target, many at once, a batch in parts; all verified."""

@@ -1,1 +1,1 @@
-"""Robots: a model file each, and what reads them."""
+"""Robot models: a TOML file a robot, what reads and writes them, rigid motions."""

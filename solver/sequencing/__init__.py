@@ -1,1 +1,1 @@
-"""Batches: the ladder graph over every target's feasible arcs, and the order of targets."""
+"""Batches as one: the ladder graph over feasible arcs, its refinement, the order of targets."""

@@ -1,1 +1,1 @@
-"""Robots in and out of URDF."""
+"""Robot models read from URDF and written to it."""

@@ -1,1 +1,1 @@
-"""The one verifier: residuals of every answer, recomputed from the problem."""
+"""The one verifier: a residual for each thing that is promised, from the problem alone."""

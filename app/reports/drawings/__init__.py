@@ -1,1 +1,1 @@
-"""Pictures of plans, with Matplotlib and without a screen."""
+"""Pictures of plans and comparisons, a file each, with Matplotlib and without a screen."""

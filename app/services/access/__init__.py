@@ -1,1 +1,1 @@
-"""Whose token it is, what it allows, and how tokens look."""
+"""Whose token it is, what it allows (a row a route in `scopes.py`), how tokens look."""

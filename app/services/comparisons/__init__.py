@@ -1,1 +1,1 @@
-"""Comparisons: taken on, run one after the other in a solver process, kept."""
+"""Comparisons of methods: taken on, run one after the other in a solver process, kept."""

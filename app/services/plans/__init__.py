@@ -1,1 +1,1 @@
-"""Wire to solver and back: batches read and checked, frames of targets, plans whole or in parts."""
+"""Requests to problems and plans to answers: batches, frames of targets, plans in parts."""

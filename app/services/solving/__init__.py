@@ -1,1 +1,1 @@
-"""Solver processes: one, the pool, what the service has them do."""
+"""Where solving runs: the pool of solver processes, one of them, what it is given to do."""

@@ -1,1 +1,1 @@
-"""The store's schema, version by version."""
+"""The store's schema, version by version, and what applies it."""

@@ -1,1 +1,1 @@
-"""Calibration files that ship: zero for each arm, and the thesis's own as an example."""
+"""Calibrations that ship: a file of zeros a robot, and the thesis's own as an example."""

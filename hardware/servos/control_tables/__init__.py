@@ -1,4 +1,4 @@
-"""Register tables of servos as data, and what reads them."""
+"""Registers of servos: a TOML file a model of servo, and what reads them."""
 
 from hardware.servos.control_tables.loading import (
     SIMULATED_FIRMWARE,

@@ -1,1 +1,1 @@
-"""Arms without a closed form: postures by Newton's method from many starts."""
+"""Approaches of arms without a closed form, by Newton's method from many starts."""

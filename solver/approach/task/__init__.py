@@ -1,1 +1,1 @@
-"""One target's task definition: its frame, its numbers for kernels, what a method answers."""
+"""One target's task: its frame, its numbers for kernels, what is feasible, what answers it."""

@@ -1,1 +1,1 @@
-"""The scenarios, a file each; `solver.comparison.registry` lists them."""
+"""What methods are compared on: a file a scenario, listed in `solver.comparison.registry`."""

@@ -1,1 +1,1 @@
-"""The nonlinear programme of the task definition, and what solves it."""
+"""The nonlinear programme of the task definition, its starts, and the backends that solve it."""

@@ -1,1 +1,1 @@
-"""One module a version, applied in order."""
+"""A file a version of the schema, applied in order; none is changed afterwards."""

@@ -1,0 +1,1 @@
+"""What the Makefile runs, and what writes documents from the code."""
