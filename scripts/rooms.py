@@ -28,7 +28,6 @@ class Room:
         is_file: a file instead of a folder.
         floors: the rooms inside, floor by floor; one floor where no contract tells them apart.
         neighbours: names of the rooms beside it that it imports.
-        others: the rooms of other houses that it imports, dotted.
     """
 
     name: str
@@ -36,7 +35,6 @@ class Room:
     is_file: bool
     floors: tuple[tuple["Room", ...], ...]
     neighbours: tuple[str, ...]
-    others: tuple[str, ...]
 
     @property
     def last_name(self) -> str:
@@ -105,7 +103,6 @@ def _room(name: str, graph: ImportGraph, floors: dict[str, list[list[str]]]) -> 
     parent, _, _ = name.rpartition(".")
     imported = _imported(graph, name)
     depth = name.count(".") + 1
-    house = _first(name, 1)
     return Room(
         name=name,
         summary=_summary(file),
@@ -120,7 +117,6 @@ def _room(name: str, graph: ImportGraph, floors: dict[str, list[list[str]]]) -> 
                 if parent and module.startswith(f"{parent}.")
             )
         ),
-        others=tuple(sorted({_first(m, 2) for m in imported if not _inside(m, house)})),
     )
 
 
@@ -152,9 +148,5 @@ def without_detours(rooms: Sequence[Room]) -> list[tuple[str, str]]:
 
 def table_of(house: Room) -> str:
     """A house's rooms as rows of Markdown, a line each."""
-    lines = ["| room | what belongs there | imports |", "| --- | --- | --- |"]
-    for room in house.all_rooms():
-        others = room.others if room.name.count(".") == 1 else ()
-        imports = ", ".join([*room.neighbours, *others])
-        lines.append(f"| `{room.path}` | {room.summary} | {imports} |")
-    return "\n".join([*lines, ""])
+    head = "| room | what belongs there |\n| --- | --- |\n"
+    return head + "".join(f"| `{room.path}` | {room.summary} |\n" for room in house.all_rooms())
