@@ -166,13 +166,14 @@ def _deaths(
 ) -> tuple[list[str], dict[str, int]]:
     """Kill and start again; what was wrong with the parts of jobs, and when the service died."""
     moments = random.Random(trial.seed)
+    order = _order(trial.rounds, moments)
     found: list[str] = []
     parts: Parts = {}
     deaths = dict.fromkeys(SHARES, 0)
     for number in range(trial.rounds):
         if number:
             service.start()
-        (moment,) = moments.choices(list(SHARES), list(SHARES.values()))
+        moment = order[number]
         if moment == WARMING:
             service.wait_until_healthy()
         elif moment == ANSWERING:
@@ -187,6 +188,14 @@ def _deaths(
         found += changed_parts(parts, now)
         parts = now
     return found, deaths
+
+
+def _order(rounds: int, moments: random.Random) -> list[str]:
+    """The moments of death: each once, so that few rounds have them all, then by their shares."""
+    drawn = moments.choices(list(SHARES), list(SHARES.values()), k=rounds)
+    order = [*SHARES, *drawn[len(SHARES) :]][:rounds]
+    moments.shuffle(order)
+    return order
 
 
 def _wait_for_part(engine: Engine, found: list[str]) -> None:

@@ -61,6 +61,20 @@ def wait_until(condition: Callable[[], bool], timeout_s: float) -> None:
         time.sleep(0.02)
 
 
+def lives(pid: int) -> bool:
+    """Whether a process runs; one that has ended and is not fetched yet does not."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def is_solving(server: Server) -> bool:
+    """Whether one of its solver processes has a problem."""
+    return "prunus_solver_running 1.0" in server.client.get("/metrics").text
+
+
 def _first_line(process: subprocess.Popen[str]) -> str:
     assert process.stdout is not None
     with selectors.DefaultSelector() as selector:

@@ -1,3 +1,5 @@
+"""Little of the mixed load of `python -m bench.service.load`."""
+
 import asyncio
 from urllib.parse import urlsplit
 
@@ -6,11 +8,11 @@ from bench.service.memory import sample
 from bench.service.mixed import mixed_load
 from tests.app.conftest import Server
 
-DURATION_S = 60
+DURATION_S = 20
 MOST_GROWTH_KIB = 300 * 1024
 
 
-def test_mixed_load_for_a_minute(server: Server) -> None:
+def test_mixed_load(server: Server) -> None:
     samples: list[tuple[float, int]] = []
 
     async def load() -> None:

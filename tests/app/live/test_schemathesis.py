@@ -3,13 +3,16 @@
 import json
 import urllib.request
 
+import pytest
+
 from bench.service.fuzz import UNLIMITED, fuzz
 from bench.service.load import live_server
 
-CASES = 50
+CASES = 20
 """Of each route."""
 
 
+@pytest.mark.long
 def test_every_route_keeps_to_its_description() -> None:
     with live_server(UNLIMITED) as (_, port):
         url = f"http://127.0.0.1:{port}"

@@ -1,4 +1,5 @@
 import concurrent.futures
+import contextlib
 import json
 import os
 import re
@@ -6,80 +7,86 @@ import signal
 import socket
 import subprocess
 import sys
-import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import httpx2
+import pytest
 
-from tests.app.conftest import REPOSITORY, Server, assert_problem, running_server, wait_until
+from tests.app.conftest import (
+    REPOSITORY,
+    Server,
+    assert_problem,
+    is_solving,
+    lives,
+    running_server,
+    wait_until,
+)
 
 Body = dict[str, Any]
 
 
-def large(body: Body, copies: int) -> Body:
-    targets = [
-        {**target, "id": f"{copy}-{target['id']}"}
-        for copy in range(copies)
-        for target in body["targets"]
-    ]
-    return {**body, "targets": targets, "options": {"method": "ncos", "include": []}}
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with running_server(tmp_path_factory.mktemp("own")) as it:
+        yield it
 
 
-def test_health_answers_while_solving(server: Server, request_body: Body) -> None:
+@contextlib.contextmanager
+def asked_of_a_worker_that_stands_still(
+    server: Server, body: Body
+) -> Iterator[concurrent.futures.Future[httpx2.Response]]:
+    """A plan that is being solved for as long as the test wants, or until it kills the worker."""
+    (worker,) = server.children()
+    os.kill(worker, signal.SIGSTOP)
     with concurrent.futures.ThreadPoolExecutor(1) as executor:
-        solving = executor.submit(server.client.post, "/v1/plans", json=large(request_body, 15))
-        answered = 0
-        while not solving.done():
-            assert httpx2.get(f"{server.url}/healthz", trust_env=False).json() == {"status": "ok"}
-            answered += 1
-            time.sleep(0.02)
-        assert solving.result().status_code == 201
-    assert answered >= 3, "the plan was solved before health was asked"
+        solving = executor.submit(server.client.post, "/v1/plans", json=body)
+        try:
+            wait_until(lambda: is_solving(server), 60)
+            yield solving
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(worker, signal.SIGCONT)
 
 
-def test_killed_workers_are_replaced(tmp_path: Path, request_body: Body) -> None:
-    with running_server(tmp_path, PRUNUS_WORKERS="1") as server:
-        (worker,) = server.children()
-        with concurrent.futures.ThreadPoolExecutor(1) as executor:
-            solving = executor.submit(
-                server.client.post, "/v1/plans", json=large(request_body, 300)
-            )
-            time.sleep(0.5)
-            assert not solving.done()
-            os.kill(worker, signal.SIGKILL)
-            problem = assert_problem(solving.result(), 503)
-        assert problem["type"].endswith("solver_unavailable")
-        assert server.stored_plans() == 0
-        assert server.client.post("/v1/plans", json=request_body).status_code == 201
+def test_health_answers_while_solving(own: Server, request_body: Body) -> None:
+    with asked_of_a_worker_that_stands_still(own, request_body) as solving:
+        for _ in range(3):
+            assert own.client.get("/healthz").json() == {"status": "ok"}
+        assert not solving.done()
+    assert solving.result().status_code == 201
 
-        # One that dies idle is replaced before anybody notices.
-        (worker,) = server.children()
+
+def test_killed_workers_are_replaced(own: Server, request_body: Body) -> None:
+    stored = own.stored_plans()
+    with asked_of_a_worker_that_stands_still(own, request_body) as solving:
+        (worker,) = own.children()
         os.kill(worker, signal.SIGKILL)
-        time.sleep(0.5)
-        assert server.client.post("/v1/plans", json=request_body).status_code == 201
-        wait_until(lambda: server.client.get("/readyz").status_code == 200, 60)
+        problem = assert_problem(solving.result(), 503)
+    assert problem["type"].endswith("solver_unavailable")
+    assert own.stored_plans() == stored
+    assert own.client.post("/v1/plans", json=request_body).status_code == 201
+
+    # One that dies idle is replaced before anybody notices.
+    (worker,) = own.children()
+    os.kill(worker, signal.SIGKILL)
+    wait_until(lambda: not lives(worker), 10)
+    assert own.client.post("/v1/plans", json=request_body).status_code == 201
+    wait_until(lambda: own.client.get("/readyz").status_code == 200, 60)
 
 
 def test_no_process_is_left_behind(tmp_path: Path) -> None:
     with running_server(tmp_path / "interrupted", PRUNUS_WORKERS="2") as server:
         workers = server.children()
         assert len(workers) == 2
-    wait_until(lambda: not any(map(_lives, workers)), 10)
+    wait_until(lambda: not any(map(lives, workers)), 10)
 
     with running_server(tmp_path / "killed", PRUNUS_WORKERS="2") as server:
         workers = server.children()
         server.process.kill()
         server.process.wait()
-        wait_until(lambda: not any(map(_lives, workers)), 10)
-
-
-def _lives(pid: int) -> bool:
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except OSError:
-        return False
-    return state != "Z"
+        wait_until(lambda: not any(map(lives, workers)), 10)
 
 
 def test_taken_port_is_one_line(tmp_path: Path) -> None:

@@ -11,14 +11,14 @@ import pytest
 
 from app.services.solving.pool import SolverPool
 from app.services.solving.process import SolverLost
+from tests.app.conftest import lives
 
 
 def _nothing() -> None:
     pass
 
 
-def _pid_after(seconds: float) -> int:
-    time.sleep(seconds)
+def _pid() -> int:
     return os.getpid()
 
 
@@ -26,8 +26,28 @@ def _fail() -> None:
     raise ValueError("just so")
 
 
-def _long_answer() -> bytes:
-    return bytes(100_000_000)
+def _pid_when_all_are_there(folder: str, count: int) -> int:
+    """The process's number, after so many processes are at work at the same time."""
+    (Path(folder) / str(os.getpid())).touch()
+    _wait(lambda: len(list(Path(folder).iterdir())) >= count)
+    return os.getpid()
+
+
+def _pid_when_told(begun: str, told: str) -> int:
+    """The process's number, once a file is there; another one tells that it has begun."""
+    Path(begun).touch()
+    _wait(Path(told).exists)
+    return os.getpid()
+
+
+def _wait(condition: Callable[[], bool]) -> None:
+    while not condition():
+        time.sleep(0.01)
+
+
+async def until(condition: Callable[[], bool]) -> None:
+    while not condition():
+        await asyncio.sleep(0.01)
 
 
 def _die_once(mark: str) -> None:
@@ -49,10 +69,10 @@ def run(test: Callable[[SolverPool], Awaitable[None]], workers: int = 1) -> None
     asyncio.run(with_pool())
 
 
-def test_tasks_are_shared_by_the_processes() -> None:
+def test_tasks_are_shared_by_the_processes(tmp_path: Path) -> None:
     async def test(pool: SolverPool) -> None:
-        pids = await asyncio.gather(*(pool.run(_pid_after, 0.3) for _ in range(6)))
-        assert len(set(pids)) == 2
+        tasks = (pool.run(_pid_when_all_are_there, str(tmp_path), 2) for _ in range(2))
+        assert len(set(await asyncio.gather(*tasks))) == 2
         assert pool.is_warm
 
     run(test, workers=2)
@@ -62,17 +82,18 @@ def test_one_task_fails_alone() -> None:
     async def test(pool: SolverPool) -> None:
         with pytest.raises(ValueError, match="just so"):
             await pool.run(_fail)
-        assert await pool.run(_pid_after, 0.0) > 0
+        assert await pool.run(_pid) > 0
 
     run(test)
 
 
-def test_a_process_that_dies_takes_its_own_task_with_it_and_no_other() -> None:
+def test_a_process_that_dies_takes_its_own_task_with_it_and_no_other(tmp_path: Path) -> None:
     async def test(pool: SolverPool) -> None:
-        doomed = await pool.run(_pid_after, 0.0)
-        over_it = asyncio.ensure_future(pool.run(_long_answer))
-        behind_it = asyncio.ensure_future(pool.run(_pid_after, 0.0))
-        await asyncio.sleep(0.03)
+        doomed, begun = await pool.run(_pid), tmp_path / "begun"
+        never = str(tmp_path / "never")
+        over_it = asyncio.ensure_future(pool.run(_pid_when_told, str(begun), never))
+        behind_it = asyncio.ensure_future(pool.run(_pid))
+        await until(begun.exists)
         os.kill(doomed, signal.SIGKILL)
         with pytest.raises(SolverLost):
             await over_it
@@ -83,45 +104,49 @@ def test_a_process_that_dies_takes_its_own_task_with_it_and_no_other() -> None:
 
 def test_one_that_dies_idle_costs_nobody_anything() -> None:
     async def test(pool: SolverPool) -> None:
-        doomed = await pool.run(_pid_after, 0.0)
+        doomed = await pool.run(_pid)
         os.kill(doomed, signal.SIGKILL)
-        await asyncio.sleep(0.3)
-        assert not pool.is_warm
-        assert await pool.run(_pid_after, 0.0) != doomed
+        await until(lambda: not lives(doomed))
+        assert await pool.run(_pid) != doomed
 
     run(test)
 
 
 def test_one_that_dies_idle_is_replaced_before_anybody_asks() -> None:
     async def test(pool: SolverPool) -> None:
-        doomed = await pool.run(_pid_after, 0.0)
+        doomed = await pool.run(_pid)
         os.kill(doomed, signal.SIGKILL)
-        while pool.is_warm:
-            await asyncio.sleep(0.01)
-        while not pool.is_warm:
-            await asyncio.sleep(0.01)
-        assert await pool.run(_pid_after, 0.0) != doomed
+        await until(lambda: not pool.is_warm)
+        await until(lambda: pool.is_warm)
+        assert await pool.run(_pid) != doomed
 
     run(test)
 
 
-def test_what_nobody_waits_for_is_not_begun() -> None:
+def test_what_nobody_waits_for_is_not_begun(tmp_path: Path) -> None:
+    begun, told, wrong = tmp_path / "begun", tmp_path / "told", tmp_path / "wrong"
+
     async def test(pool: SolverPool) -> None:
-        first = asyncio.ensure_future(pool.run(_pid_after, 1.0))
-        given_up = asyncio.ensure_future(pool.run(_pid_after, 50.0))
-        await asyncio.sleep(0.2)
+        first = asyncio.ensure_future(pool.run(_pid_when_told, str(begun), str(told)))
+        given_up = asyncio.ensure_future(pool.run(_pid_when_told, str(wrong), str(told)))
+        await until(begun.exists)
         given_up.cancel()
-        assert await pool.run(_pid_after, 0.0) == await first
+        told.touch()
+        assert await pool.run(_pid) == await first
+        assert not wrong.exists()
 
     run(test)
 
 
-def test_closing_ends_what_runs_and_what_waits() -> None:
+def test_closing_ends_what_runs_and_what_waits(tmp_path: Path) -> None:
+    begun, never = tmp_path / "begun", str(tmp_path / "never")
+
     async def test() -> None:
         pool = SolverPool(1, _nothing)
-        await pool.run(_pid_after, 0.0)
-        tasks = [asyncio.ensure_future(pool.run(_pid_after, 60.0)) for _ in range(3)]
-        await asyncio.sleep(0.2)
+        tasks = [
+            asyncio.ensure_future(pool.run(_pid_when_told, str(begun), never)) for _ in range(3)
+        ]
+        await until(begun.exists)
         async with asyncio.timeout(10):
             await pool.close()
             ends = await asyncio.gather(*tasks, return_exceptions=True)
@@ -132,7 +157,7 @@ def test_closing_ends_what_runs_and_what_waits() -> None:
 
 def test_a_system_that_starts_no_process_is_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     async def test(pool: SolverPool) -> None:
-        doomed = await pool.run(_pid_after, 0.0)
+        doomed = await pool.run(_pid)
         refusals = iter([OSError("no more processes")] * 2)
         start = SpawnProcess.start
 
@@ -143,8 +168,8 @@ def test_a_system_that_starts_no_process_is_asked_again(monkeypatch: pytest.Monk
 
         monkeypatch.setattr(SpawnProcess, "start", start_later)
         os.kill(doomed, signal.SIGKILL)
-        await asyncio.sleep(0.3)
-        assert await pool.run(_pid_after, 0.0) != doomed
+        await until(lambda: not lives(doomed))
+        assert await pool.run(_pid) != doomed
         assert next(refusals, None) is None
 
     run(test)
@@ -156,7 +181,7 @@ def test_one_that_cannot_be_prepared_is_started_again(tmp_path: Path) -> None:
         try:
             async with asyncio.timeout(60):
                 assert not pool.is_warm
-                assert await pool.run(_pid_after, 0.0) > 0
+                assert await pool.run(_pid) > 0
                 assert pool.is_warm
         finally:
             await pool.close()

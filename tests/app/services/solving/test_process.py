@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 import pytest
 
 from app.services.solving.process import SolverLost, SolverNotStarted, SolverProcess
-from tests.app.conftest import REPOSITORY, wait_until
+from tests.app.conftest import REPOSITORY, lives, wait_until
 
 END_S = 30
 
@@ -68,6 +68,11 @@ def _sleep(seconds: float) -> None:
     time.sleep(seconds)
 
 
+def _begin_and_sleep(begun: str) -> None:
+    Path(begun).touch()
+    time.sleep(60.0)
+
+
 def _unsendable() -> Any:
     return threading.Lock()
 
@@ -103,11 +108,11 @@ def test_what_the_work_raises_is_raised_here_with_its_place() -> None:
         assert call(process, _bytes, 1).result(END_S) == b"\0"
 
 
-def test_one_that_is_ended_over_its_work_is_lost() -> None:
+def test_one_that_is_ended_over_its_work_is_lost(tmp_path: Path) -> None:
+    begun = tmp_path / "begun"
     with running() as process:
-        call(process, _pid).result(END_S)
-        answer = call(process, _sleep, 60.0)
-        time.sleep(0.2)
+        answer = call(process, _begin_and_sleep, str(begun))
+        wait_until(begun.exists, END_S)
         process.end()
         with pytest.raises(SolverLost):
             answer.result(END_S)
@@ -178,5 +183,4 @@ if __name__ == "__main__":
         [sys.executable, "-c", program], cwd=REPOSITORY, stdout=subprocess.PIPE, check=False
     )
     assert started.returncode == -signal.SIGKILL
-    stat = Path(f"/proc/{int(started.stdout)}/stat")
-    wait_until(lambda: not stat.exists() or " Z " in stat.read_text(), END_S)
+    wait_until(lambda: not lives(int(started.stdout)), END_S)
