@@ -17,26 +17,27 @@ import pytest
 
 from app.services.solving.process import SolverLost, SolverNotStarted, SolverProcess
 from tests.app.conftest import REPOSITORY, lives, wait_until
+from tests.app.services.solving import work
 
 END_S = 30
 
 
 @contextlib.contextmanager
 def running() -> Iterator[SolverProcess]:
-    process = SolverProcess(prepare=_nothing)
+    process = SolverProcess(prepare=work.nothing)
     try:
         yield process
     finally:
         process.end()
 
 
-def call(process: SolverProcess, work: Any, *arguments: Any) -> Future[Any]:
+def call(process: SolverProcess, function: Any, *arguments: Any) -> Future[Any]:
     """The answer, awaited on a loop of its own, so that the caller can go on."""
     answer: Future[Any] = Future()
 
     async def wait() -> None:
         try:
-            answer.set_result(await process.call(work, *arguments))
+            answer.set_result(await process.call(function, *arguments))
         except BaseException as error:
             answer.set_exception(error)
 
@@ -44,51 +45,9 @@ def call(process: SolverProcess, work: Any, *arguments: Any) -> Future[Any]:
     return answer
 
 
-def _nothing() -> None:
-    pass
-
-
-def _fail_to_start() -> NoReturn:
-    raise RuntimeError("no kernels")
-
-
-def _bytes(count: int) -> bytes:
-    return bytes(count)
-
-
-def _pid() -> int:
-    return os.getpid()
-
-
-def _fail(value: str) -> NoReturn:
-    raise ValueError(value)
-
-
-def _sleep(seconds: float) -> None:
-    time.sleep(seconds)
-
-
-def _begin_and_sleep(begun: str) -> None:
-    Path(begun).touch()
-    time.sleep(60.0)
-
-
-def _unsendable() -> Any:
-    return threading.Lock()
-
-
-class Particular(Exception):
-    def __init__(self, *, value: str) -> None:
-        super().__init__(f"particular {value}")
-
-
-def _fail_particularly() -> NoReturn:
-    raise Particular(value="case")
-
-
 def test_answers_come_one_after_another() -> None:
     with running() as process:
-        answers = [call(process, _bytes, count) for count in (3, 10_000_000, 0)]
+        answers = [call(process, work.count_bytes, count) for count in (3, 10_000_000, 0)]
         assert sorted(len(answer.result(END_S)) for answer in answers) == [0, 3, 10_000_000]
         assert process.is_warm
 
@@ -96,28 +55,28 @@ def test_answers_come_one_after_another() -> None:
 def test_what_the_work_raises_is_raised_here_with_its_place() -> None:
     with running() as process:
         with pytest.raises(ValueError, match="just so") as caught:
-            call(process, _fail, "just so").result(END_S)
-        assert "in _fail" in "".join(caught.value.__notes__)
+            call(process, work.fail, "just so").result(END_S)
+        assert "in fail" in "".join(caught.value.__notes__)
         # It could not be built again on this side.
         with pytest.raises(RuntimeError, match="Particular: particular case"):
-            call(process, _fail_particularly).result(END_S)
+            call(process, work.fail_particularly).result(END_S)
         with pytest.raises(Exception, match="pickle"):
-            call(process, _unsendable).result(END_S)
+            call(process, work.unsendable).result(END_S)
         with pytest.raises(Exception, match="pickle"):
-            call(process, _bytes, threading.Lock()).result(END_S)
-        assert call(process, _bytes, 1).result(END_S) == b"\0"
+            call(process, work.count_bytes, threading.Lock()).result(END_S)
+        assert call(process, work.count_bytes, 1).result(END_S) == b"\0"
 
 
 def test_one_that_is_ended_over_its_work_is_lost(tmp_path: Path) -> None:
     begun = tmp_path / "begun"
     with running() as process:
-        answer = call(process, _begin_and_sleep, str(begun))
+        answer = call(process, work.begin_and_sleep, str(begun))
         wait_until(begun.exists, END_S)
         process.end()
         with pytest.raises(SolverLost):
             answer.result(END_S)
         with pytest.raises(SolverLost):
-            call(process, _pid).result(END_S)
+            call(process, work.pid).result(END_S)
         process.end()
     assert not process.is_alive
 
@@ -127,7 +86,7 @@ def test_what_cannot_even_be_started_is_said_so(monkeypatch: pytest.MonkeyPatch)
     resource.setrlimit(resource.RLIMIT_NOFILE, (3, hard))  # no file more
     try:
         with pytest.raises(SolverNotStarted):
-            SolverProcess(prepare=_nothing)
+            SolverProcess(prepare=work.nothing)
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
@@ -138,15 +97,15 @@ def test_what_cannot_even_be_started_is_said_so(monkeypatch: pytest.MonkeyPatch)
         with monkeypatch.context() as patch:
             patch.setattr(broken, fail)
             with pytest.raises(SolverNotStarted):
-                SolverProcess(prepare=_nothing)
+                SolverProcess(prepare=work.nothing)
     with running() as process:
-        assert call(process, _bytes, 1).result(END_S) == b"\0"
+        assert call(process, work.count_bytes, 1).result(END_S) == b"\0"
 
 
 def test_one_that_cannot_start_is_lost() -> None:
-    process = SolverProcess(prepare=_fail_to_start)
+    process = SolverProcess(prepare=work.fail_to_start)
     with pytest.raises(SolverLost):
-        call(process, _pid).result(END_S)
+        call(process, work.pid).result(END_S)
     assert not process.is_warm
     process.end()
 
@@ -155,32 +114,32 @@ def test_one_that_cannot_start_is_lost() -> None:
 def test_one_that_dies_over_a_long_answer_is_lost_and_not_waited_for(seed: int) -> None:
     """The standard library's pool waits for ever for the second half of what it began to send."""
     with running() as process:
-        pid = call(process, _pid).result(END_S)
-        answer = call(process, _bytes, 100_000_000)
+        pid = call(process, work.pid).result(END_S)
+        answer = call(process, work.count_bytes, 100_000_000)
         time.sleep(random.Random(seed).uniform(0.0, 0.1))
         os.kill(pid, signal.SIGKILL)
         with contextlib.suppress(SolverLost):
             answer.result(END_S)
         with pytest.raises(SolverLost):
-            call(process, _pid).result(END_S)
+            call(process, work.pid).result(END_S)
 
 
-def test_it_ends_with_the_process_that_started_it_whatever_it_does() -> None:
+def test_it_ends_with_the_process_that_started_it_whatever_it_does(tmp_path: Path) -> None:
     program = """
-import asyncio, os, signal
-from tests.app.services.solving import test_process as here
+import asyncio, os, signal, sys
+from app.services.solving.process import SolverProcess
+from tests.app.services.solving import work
 
 async def begin():
-    process = here.SolverProcess(prepare=here._nothing)
-    print(await process.call(here._pid), flush=True)
+    process = SolverProcess(prepare=work.nothing)
+    print(await process.call(work.pid), flush=True)
     asyncio.get_running_loop().call_later(0.5, os.kill, os.getpid(), signal.SIGKILL)
-    await process.call(here._sleep, 60.0)
+    await process.call(work.begin_and_sleep, sys.argv[1])
 
 if __name__ == "__main__":
     asyncio.run(begin())
 """
-    started = subprocess.run(
-        [sys.executable, "-c", program], cwd=REPOSITORY, stdout=subprocess.PIPE, check=False
-    )
+    command = [sys.executable, "-c", program, str(tmp_path / "begun")]
+    started = subprocess.run(command, cwd=REPOSITORY, stdout=subprocess.PIPE, check=False)
     assert started.returncode == -signal.SIGKILL
     wait_until(lambda: not lives(int(started.stdout)), END_S)
