@@ -62,12 +62,13 @@ def wait_until(condition: Callable[[], bool], timeout_s: float) -> None:
 
 
 def lives(pid: int) -> bool:
-    """Whether a process runs; one that has ended and is not fetched yet does not."""
+    """Whether a process runs; one that has ended with all its threads, but is not fetched, not."""
     try:
         state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        threads = len(os.listdir(f"/proc/{pid}/task"))
     except OSError:
         return False
-    return state != "Z"
+    return state != "Z" or threads > 1
 
 
 def is_solving(server: Server) -> bool:
