@@ -36,6 +36,7 @@ from app.routers import (
     thinning_selections,
 )
 from app.routers.common import problem_answers
+from app.routers.dependencies import Services, keep_services, services_of
 from app.schemas.comparisons import ComparisonRequest
 from app.schemas.executions import ExecutionRequest
 from app.schemas.frames import FrameRegistrationRequest, FrameRequest
@@ -68,26 +69,36 @@ from app.store import (
 from app.version import prunus_version
 
 
-def create_app(settings: Settings) -> FastAPI:
-    """The application; it touches nothing outside before it is started."""
+def create_app(settings: Settings, traffic: Traffic | None = None) -> FastAPI:
+    """The application; it touches nothing outside before it is started.
+
+    Args:
+        settings: of the service.
+        traffic: known to whoever serves the application, and tells it of its end.
+    """
+    counters = Metrics(prunus_version())
+    traffic = traffic or Traffic()
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with _running_services(settings, counters, traffic) as services:
+            keep_services(app, services)
+            yield
+
     app = FastAPI(
         title="Prunus",
         version=prunus_version(),
         description="Decides how a robot arm reaches for blossoms in a tree. "
         "Metres, radians and seconds in the robot's base frame throughout.",
-        lifespan=_lifespan,
+        lifespan=lifespan,
         # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
         docs_url=None,
         # A client that does not follow redirects would take one for an answer to its batch.
         redirect_slashes=False,
         redoc_url=None,
     )
-    app.state.settings = settings
-    app.state.metrics = Metrics(prunus_version())
-    app.state.traffic = Traffic()
-    app.state.stopping = app.state.traffic.stopping
     # What is added last is outermost.
-    app.add_middleware(StoppingMiddleware, traffic=app.state.traffic)
+    app.add_middleware(StoppingMiddleware, traffic=traffic)
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
     app.add_middleware(
         BodyTimeoutMiddleware,
@@ -96,6 +107,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.add_middleware(
         AccessGuardMiddleware,
+        access=lambda: services_of(app).access,
         token_required=settings.token_required,
         rate_per_s=settings.rate_limit_per_s,
         burst=settings.rate_burst,
@@ -110,8 +122,8 @@ def create_app(settings: Settings) -> FastAPI:
         any_name=settings.token_required,
         origins=settings.cors_origins,
     )
-    app.add_middleware(RequestLogMiddleware, metrics=app.state.metrics, traffic=app.state.traffic)
-    install_error_handlers(app)
+    app.add_middleware(RequestLogMiddleware, metrics=counters, traffic=traffic)
+    install_error_handlers(app, counters.store_failed)
     for module in (
         plans,
         jobs,
@@ -136,47 +148,53 @@ def create_app(settings: Settings) -> FastAPI:
 
 
 @asynccontextmanager
-async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    settings: Settings = app.state.settings
-    state = app.state
+async def _running_services(
+    settings: Settings, counters: Metrics, traffic: Traffic
+) -> AsyncIterator[Services]:
     engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
-    state.store = PlanStore(engine)
-    state.execution_store = ExecutionStore(engine)
-    state.frames = FrameService(FrameStore(engine))
-    state.idempotency = IdempotencyService(IdempotencyStore(engine))
-    state.links = LinkService()
-    state.engine = engine
-    event.listen(engine, "handle_error", lambda _: state.metrics.store_failed())
-    state.access = AccessService(TokenStore(engine))
-    state.leases = LeaseService()
-    state.solving = SolvingService(
+    event.listen(engine, "handle_error", lambda _: counters.store_failed())
+    plan_store, execution_store = PlanStore(engine), ExecutionStore(engine)
+    links, leases = LinkService(), LeaseService()
+    solving = SolvingService(
         settings.workers,
         settings.most_waiting_plans,
-        state.metrics,
+        counters,
         settings.log_options,
     )
-    state.jobs = JobService(
-        JobStore(engine),
-        workers=settings.job_workers,
-        most_waiting=settings.most_waiting_jobs,
-        logs=settings.log_options,
-        measures=state.metrics,
-        stopping=state.stopping,
+    services = Services(
+        settings=settings,
+        metrics=counters,
+        traffic=traffic,
+        engine=engine,
+        plan_store=plan_store,
+        execution_store=execution_store,
+        access=AccessService(TokenStore(engine)),
+        idempotency=IdempotencyService(IdempotencyStore(engine)),
+        frames=FrameService(FrameStore(engine)),
+        links=links,
+        leases=leases,
+        solving=solving,
+        jobs=JobService(
+            JobStore(engine),
+            workers=settings.job_workers,
+            most_waiting=settings.most_waiting_jobs,
+            logs=settings.log_options,
+            measures=counters,
+            stopping=traffic.stopping,
+        ),
+        executions=ExecutionService(execution_store, plan_store, solving, links, leases),
+        comparisons=ComparisonService(ComparisonStore(engine), solving),
     )
-    state.executions = ExecutionService(
-        state.execution_store, state.store, state.solving, state.links, state.leases
-    )
-    state.comparisons = ComparisonService(ComparisonStore(engine), state.solving)
     try:
-        await state.executions.end_interrupted()
-        await state.comparisons.end_interrupted()
-        await state.jobs.start()
-        yield
+        await services.executions.end_interrupted()
+        await services.comparisons.end_interrupted()
+        await services.jobs.start()
+        yield services
     finally:
-        await state.executions.close()
-        await state.comparisons.close()
-        await state.jobs.close()
-        await state.solving.close()
+        await services.executions.close()
+        await services.comparisons.close()
+        await services.jobs.close()
+        await services.solving.close()
         await run_in_threadpool(engine.dispose)
 
 
