@@ -15,7 +15,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import problem_response
 from app.guards.rates import RateLimiter
-from app.services.access.scopes import ANY, OPEN, ROUTES, STOP, UNLIMITED, WEBSOCKET, Scopes, row_of
+from app.guards.route_scopes import ANY, OPEN, ROUTES, STOP, UNLIMITED, WEBSOCKET, row_of
+from app.services.access.scopes import Scopes
 from app.services.access.service import TRUSTED_S, AccessService, Client
 
 REVOKED: Final = 4401

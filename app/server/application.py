@@ -18,6 +18,7 @@ from app.guards.body_timeout import BodyTimeoutMiddleware
 from app.guards.browser import BrowserGuardMiddleware
 from app.guards.cors import CORS_RULES
 from app.guards.request_log import RequestLogMiddleware
+from app.guards.route_scopes import check_rows
 from app.guards.traffic import StoppingMiddleware, Traffic
 from app.observation.metrics import Metrics
 from app.routers import (
@@ -45,7 +46,6 @@ from app.schemas.problem_details import ProblemDetails
 from app.schemas.requests import PlanRequest
 from app.schemas.thinning_selections import ThinningSelectionRequest
 from app.server.access_document import describe_access
-from app.services.access.scopes import check_rows
 from app.services.access.service import AccessService
 from app.services.comparisons.service import ComparisonService
 from app.services.idempotency import IdempotencyService

@@ -10,8 +10,8 @@ from sqlalchemy.exc import OperationalError
 from starlette.types import Message, Receive, Scope, Send
 
 from app.guards.access import REVOKED, AccessGuardMiddleware
+from app.guards.route_scopes import STOP
 from app.services.access import service as access_module
-from app.services.access.scopes import STOP
 from app.services.access.service import TRUSTED_S, AccessService
 from app.services.access.tokens import new_token
 from app.settings import Settings
