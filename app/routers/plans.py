@@ -25,7 +25,7 @@ from app.services.plans.batch_reading import (
 )
 from app.services.plans.plan_reading import plan_chunks, plan_lines
 from app.services.store_calls import store_call
-from app.store import NewKey, PlanStore, new_entry
+from app.store import CREATED, NewKey, PlanStore, new_entry
 
 RESPOND_ASYNC: Final = "respond-async"
 PREFER: Final = {
@@ -96,7 +96,7 @@ async def _create(
         robot=order.problem.robot.name,
         request=order.request,
         answer=answer.decode(),
-        key=new_entry(key, 201, location),
+        key=new_entry(key, CREATED, location),
     )
     return Response(
         answer,

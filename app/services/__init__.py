@@ -1,1 +1,1 @@
-"""What the routes and the command line do, without HTTP."""
+"""What the routes and the command line do, whoever asks and however it is answered."""

@@ -70,7 +70,11 @@ def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:
 
 
 def robot_instance(name: str) -> RobotInstance:
-    """The robot of that name, or NotFound: there is none."""
+    """The robot of that name.
+
+    Raises:
+        NotFound: there is none.
+    """
     try:
         return load_instance(name)
     except UnknownRobot:
@@ -87,7 +91,11 @@ def _fits(answer: Mapping[str, Any], instance: RobotInstance) -> bool:
 
 
 def check_worker(plan: OrderedPlan, link: Link) -> None:
-    """Raise Conflict unless this worker can execute that plan now."""
+    """See to it that this worker can execute that plan now.
+
+    Raises:
+        Conflict: it cannot.
+    """
     if link.telemetry is not None and link.telemetry.status == FAULT:
         detail = "The robot has a fault; somebody must look at it and acknowledge it first."
         raise Conflict("fault", detail)

@@ -42,7 +42,7 @@ from app.services.robots.motions import target_motions
 from app.services.solving.process import SolverLost
 from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
-from app.store import ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
+from app.store import ACCEPTED, ExecutionStore, NewKey, PlanStore, RobotBusy, new_entry
 from hardware.clock import timestamp
 from hardware.link.messages import (
     CANCELED,
@@ -125,7 +125,10 @@ class ExecutionService:
         While somebody has a lease of the robot, `lease_id` must be its id, here and below.
 
         Raises:
-            ServiceError: it is not taken on, and why.
+            NotFound: no such plan or robot.
+            InvalidRequest: no target of the plan can be approached.
+            Conflict: the robot is busy, leased to another, has a fault, or does not fit the plan.
+            Unavailable: no worker is connected.
             KeyTaken: something was created under the key before.
         """
         plan = await ordered_plan(self._plans, plan_id, robot)
@@ -163,7 +166,7 @@ class ExecutionService:
                 status=execution.status,
                 created_at=datetime.fromisoformat(execution.created_at),
                 document=document,
-                key=new_entry(key, 202, execution.location, document),
+                key=new_entry(key, ACCEPTED, execution.location, document),
             )
         except RobotBusy:
             raise Conflict("busy", "The robot has an active execution.") from None
@@ -212,22 +215,41 @@ class ExecutionService:
             order.link.outbox.hand_over((encode(execute), *motions))
 
     async def document(self, execution_id: str) -> str:
-        """The body of the answer for an execution, or NotFound: there is none."""
+        """The body of the answer for an execution.
+
+        Raises:
+            NotFound: there is none of this id.
+        """
         document = await store_call(self._store.document, execution_id)
         if document is None:
             raise execution_not_found()
         return document
 
     async def pause(self, execution_id: str, *, lease_id: str = "") -> Execution:
-        """Ask the worker to pause; its account says when it has."""
+        """Ask the worker to pause; its account says when it has.
+
+        Raises:
+            NotFound: there is none of this id.
+            Conflict: it is not executing, or the robot is leased to another.
+        """
         return await self._command(execution_id, lease_id, Pause, (EXECUTING,))
 
     async def resume(self, execution_id: str, *, lease_id: str = "") -> Execution:
-        """Ask the worker to go on; its account says when it does."""
+        """Ask the worker to go on; its account says when it does.
+
+        Raises:
+            NotFound: there is none of this id.
+            Conflict: it is not paused, or the robot is leased to another.
+        """
         return await self._command(execution_id, lease_id, Resume, (PAUSED,))
 
     async def cancel(self, execution_id: str, *, lease_id: str = "") -> Execution:
-        """Cancel: at once while the worker cannot have begun, else as soon as it stands."""
+        """Cancel: at once while the worker cannot have begun, else as soon as it stands.
+
+        Raises:
+            NotFound: there is none of this id.
+            Conflict: it has ended, or the robot is leased to another.
+        """
         return await self._command(execution_id, lease_id, Cancel, (QUEUED, EXECUTING, PAUSED))
 
     async def _command(
