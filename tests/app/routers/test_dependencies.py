@@ -14,9 +14,7 @@ from fastapi.requests import HTTPConnection
 
 import app
 from app.routers import dependencies
-from app.routers.dependencies import AllServices, Services, keep_services, services_of
-from app.server.application import create_app
-from app.settings import Settings
+from app.routers.dependencies import AllServices, Services, keep_services
 
 ROOM = Path(app.__file__).parent
 UNTYPED = re.compile(r"\bapp\.state\b|\[\"app\"\]")
@@ -64,10 +62,3 @@ def test_a_connection_of_any_kind_leads_to_the_services(services: Services) -> N
     for kind in ("http", "websocket"):
         connection = HTTPConnection({"type": kind, "app": application})
         assert asyncio.run(depends.dependency(connection)) is services
-
-
-def test_an_application_that_is_not_started_has_none_and_touches_nothing(tmp_path: Path) -> None:
-    made = create_app(Settings(data_dir=tmp_path / "data"), Mock())
-    with pytest.raises(AttributeError):
-        services_of(made)
-    assert list(tmp_path.iterdir()) == []
