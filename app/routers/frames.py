@@ -8,7 +8,7 @@ from app.routers.common import body_of, json_body, problem_answers
 from app.routers.dependencies import TheFrames, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.schemas.frames import FrameAnswer, FrameRegistrationRequest, FrameRequest, FramesAnswer
-from app.services.plans.frames import NAME_PATTERN, location_of
+from app.services.plans.registered_frames import NAME_PATTERN, location_of
 from app.services.store_calls import store_call
 from app.store import NewKey
 

@@ -39,7 +39,7 @@ from app.services.access.service import AccessService
 from app.services.comparisons.service import ComparisonService
 from app.services.idempotency import IdempotencyService
 from app.services.jobs.service import JobService
-from app.services.plans.frames import FrameService
+from app.services.plans.registered_frames import FrameService
 from app.services.robots.executions import ExecutionService
 from app.services.robots.leases import LeaseService
 from app.services.robots.links import LinkService

@@ -16,10 +16,10 @@ from pydantic import TypeAdapter
 
 from app.reports.csv_table import FORMULA_STARTS, comparison_to_csv
 from app.reports.html import comparison_to_html, content_security_policy, waiting_page
+from app.reports.json_values import comparison_to_wire
 from app.reports.markdown import comparison_to_markdown
 from app.reports.picture import Picture
 from app.reports.tables import FAILED, ROW_COLUMNS, number, row_table, seconds
-from app.reports.wire import comparison_to_wire
 from app.schemas.comparison_results import (
     ComparisonResultAnswer,
     ComparisonRowAnswer,
