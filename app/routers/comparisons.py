@@ -5,9 +5,10 @@ from fastapi import APIRouter, Request, Response
 from pydantic import MISSING
 
 from app.reports.html import content_security_policy
-from app.routers.common import body_of, json_body, problem_answers
 from app.routers.dependencies import TheComparisons, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.comparisons import (
     ComparisonAnswer,
     ComparisonRequest,

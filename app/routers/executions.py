@@ -2,9 +2,10 @@
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.routers.common import body_of, json_body, lease_of, problem_answers
 from app.routers.dependencies import TheExecutions, TheExecutionStore, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body, lease_of
 from app.schemas.executions import (
     ExecutionAnswer,
     ExecutionRequest,

@@ -4,9 +4,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
 
-from app.routers.common import body_of, json_body, problem_answers
 from app.routers.dependencies import TheFrames, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.frames import FrameAnswer, FrameRegistrationRequest, FrameRequest, FramesAnswer
 from app.services.plans.registered_frames import NAME_PATTERN, location_of
 from app.services.store_calls import store_call

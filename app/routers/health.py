@@ -5,8 +5,8 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from app.errors import ProblemError
 from app.guards.traffic import RETRY_S
-from app.routers.common import problem_answers
 from app.routers.dependencies import ThePlanStore, TheSolving, TheTraffic
+from app.routers.problem_answers import problem_answers
 from app.schemas.answers import HealthAnswer
 from app.services.store_calls import store_call
 

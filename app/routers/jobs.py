@@ -10,12 +10,13 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool
 from starlette.types import Send
 
-from app.routers.common import NDJSON, problem_answers, wants_lines
 from app.routers.dependencies import TheJobs, ThePlanStore
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import NDJSON, wants_lines
 from app.schemas.jobs import JobAnswer, JobResultsAnswer, JobsAnswer
+from app.schemas.present import present
 from app.services.plans.parts import joined_arrays
 from app.services.plans.plan_reading import lines_of
-from app.services.plans.wire import present
 from app.services.store_calls import store_call
 from app.store import JobRow, PlanStore
 from hardware.clock import instant_text

@@ -8,9 +8,10 @@ from pydantic import MISSING
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import body_of, json_body, problem_answers
 from app.routers.dependencies import TheLeases
 from app.routers.idempotency_key import CREATED_HEADERS, REPLAYED, new_key, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.leases import (
     USUAL_LEASE_S,
     LeaseAnswer,
@@ -18,7 +19,7 @@ from app.schemas.leases import (
     LeaseRequest,
     LeaseStateAnswer,
 )
-from app.services.robots.execution_checks import robot_instance
+from app.services.robots.instances import robot_instance
 from app.services.robots.leases import Lease
 
 AS_LONG_AS_IT_LASTS: Final = (

@@ -4,8 +4,8 @@ from fastapi import APIRouter, Response
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.observation.metrics import MEDIA_TYPE
-from app.routers.common import problem_answers
 from app.routers.dependencies import TheEngine, TheLinks, TheMetrics
+from app.routers.problem_answers import problem_answers
 from app.services.store_calls import store_call
 from app.store.counts import stored_counts
 from app.store.failures import StoreBusy

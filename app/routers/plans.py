@@ -8,10 +8,11 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import NDJSON, body_of, json_body, problem_answers, wants_lines
 from app.routers.dependencies import AllServices, Services, ThePlanStore
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.routers.jobs import job_json
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import NDJSON, body_of, json_body, wants_lines
 from app.schemas.answers import PlanAnswer
 from app.schemas.jobs import JobAnswer
 from app.schemas.requests import PlanRequest

@@ -7,11 +7,12 @@ from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import lease_of, problem_answers
 from app.routers.dependencies import TheExecutions, TheLeases, TheLinks
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import lease_of
 from app.schemas.executions import AcknowledgeAnswer, RobotStateAnswer, StopAnswer
-from app.services.plans.wire import present
-from app.services.robots.execution_checks import no_worker, robot_instance
+from app.schemas.present import present
+from app.services.robots.instances import no_worker, robot_instance
 from app.services.robots.links import ANSWER_S, Link, LinkService
 from hardware.link.messages import Acknowledge, AcknowledgeReport, Stop, StopReport
 

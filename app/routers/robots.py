@@ -5,8 +5,8 @@ from typing import Any
 from fastapi import APIRouter, Response
 from pydantic import MISSING
 
-from app.routers.common import problem_answers
 from app.routers.dependencies import TheLinks
+from app.routers.problem_answers import problem_answers
 from app.schemas.robots import (
     JointAnswer,
     RobotAnswer,
@@ -14,7 +14,7 @@ from app.schemas.robots import (
     RobotSummary,
     ToolAnswer,
 )
-from app.services.robots.execution_checks import robot_instance
+from app.services.robots.instances import robot_instance
 from hardware.servos.instances import RobotInstance, instance_names, load_instance
 from solver.robots.model import REVOLUTE, Joint
 

@@ -3,8 +3,9 @@
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.routers.common import body_of, json_body, problem_answers
 from app.routers.dependencies import TheSolving
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.thinning_selections import ThinningSelectionAnswer, ThinningSelectionRequest
 from app.services.plans.batch_reading import LARGE_BODY_BYTES
 from app.services.plans.selecting import selection_to_json

@@ -3,7 +3,7 @@
 from typing import Any, Final
 
 from app.guards.route_scopes import LEASED, OPEN, ROUTES, UNLIMITED
-from app.routers.common import problem_answers
+from app.routers.problem_answers import problem_answers
 from app.services.access.scopes import ADMIN, SCOPES
 from app.services.robots.leases import LEASE_HEADER
 

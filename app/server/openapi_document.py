@@ -6,7 +6,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
 
-from app.routers.common import problem_answers
+from app.routers.problem_answers import problem_answers
 from app.schemas.comparisons import ComparisonRequest
 from app.schemas.executions import ExecutionRequest
 from app.schemas.frames import FrameRegistrationRequest, FrameRequest

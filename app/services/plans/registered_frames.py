@@ -10,9 +10,9 @@ import orjson
 from pydantic import MISSING
 
 from app.schemas.frames import FrameRegistrationRequest, FrameRequest, PointPairBody
+from app.schemas.present import present
 from app.services.exceptions import Conflict, InvalidRequest, NotFound, invalid_request
 from app.services.plans.sent_frames import BASE_FRAME
-from app.services.plans.wire import present
 from app.store import FramesFull, FrameStore, NewKey, StoredFrame
 from hardware.clock import instant_text
 from hardware.servos.instances import instance_names, load_instance

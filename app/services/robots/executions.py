@@ -14,7 +14,6 @@ from app.services.exceptions import Conflict
 from app.services.robots.execution_checks import (
     OrderedPlan,
     check_worker,
-    no_worker,
     ordered_plan,
     wrong_state,
 )
@@ -25,6 +24,7 @@ from app.services.robots.execution_record import (
     corrected,
     with_account,
 )
+from app.services.robots.instances import no_worker
 from app.services.robots.leases import LeaseService
 from app.services.robots.links import Link, LinkService
 from app.services.robots.motions import target_motions
