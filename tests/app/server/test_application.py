@@ -1,7 +1,6 @@
 """What is true of the application as a whole."""
 
 from pathlib import Path
-from unittest.mock import Mock
 
 import pytest
 
@@ -30,8 +29,8 @@ def test_a_slash_too_many_is_no_redirection(server: Server) -> None:
     assert_problem(server.client.post("/v1/plans/", json={}), 404)
 
 
-def test_an_application_that_is_not_started_has_none_and_touches_nothing(tmp_path: Path) -> None:
-    made = create_app(Settings(data_dir=tmp_path / "data"), Mock())
+def test_what_is_not_started_has_no_services_and_touches_nothing(tmp_path: Path) -> None:
+    made = create_app(Settings(data_dir=tmp_path / "data"))
     with pytest.raises(AttributeError):
         services_of(made)
     assert list(tmp_path.iterdir()) == []
