@@ -2,7 +2,7 @@
 
 import http
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
 
@@ -123,8 +123,13 @@ def internal_error() -> Response:
     return problem_response(500, "internal_error", "Something broke; the log has it.")
 
 
-def install_error_handlers(app: FastAPI) -> None:
-    """Make every error of the application a problem."""
+def install_error_handlers(app: FastAPI, store_failed: Callable[[], None]) -> None:
+    """Make every error of the application a problem.
+
+    Args:
+        app: whose errors they are.
+        store_failed: counts a failure of the store that its engine has not seen.
+    """
 
     @app.exception_handler(ProblemError)
     async def expected(_: Request, error: ProblemError) -> Response:
@@ -144,7 +149,7 @@ def install_error_handlers(app: FastAPI) -> None:
         if problem is None:
             raise error
         if isinstance(error, StoreBusy):
-            request.app.state.metrics.store_failed()  # the engine, which counts, has not seen it
+            store_failed()
         logger.warning("%s: %s", problem.code, cause_of(error))
         return await expected(request, problem)
 

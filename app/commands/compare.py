@@ -71,7 +71,7 @@ def compare(
     if as_json:
         import orjson
 
-        from app.reports.wire import comparison_to_wire
+        from app.reports.json_values import comparison_to_wire
 
         sys.stdout.write(orjson.dumps(comparison_to_wire(comparison)).decode() + "\n")
     else:

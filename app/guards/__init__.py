@@ -1,1 +1,1 @@
-"""In front of every route: tokens, origins, sizes, times, rates, and the log of requests."""
+"""In front of every route: tokens and scopes (a row a route), origins, sizes, times, rates, logs."""

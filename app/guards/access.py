@@ -15,7 +15,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.errors import problem_response
 from app.guards.rates import RateLimiter
-from app.services.access.scopes import ANY, OPEN, ROUTES, STOP, UNLIMITED, WEBSOCKET, Scopes, row_of
+from app.guards.route_scopes import ANY, OPEN, ROUTES, STOP, UNLIMITED, WEBSOCKET, row_of
+from app.services.access.scopes import Scopes
 from app.services.access.service import TRUSTED_S, AccessService, Client
 
 REVOKED: Final = 4401
@@ -44,7 +45,8 @@ class AccessGuardMiddleware:
     Who asks is then in the request's state: `client_id` is the token's id, or empty without one.
 
     Args:
-        app: what is guarded; its `state.access` says which tokens are valid.
+        app: what is guarded.
+        access: says which tokens are valid; there from the application's start on.
         token_required: nothing but open routes without a token.
         rate_per_s, burst: how many requests a client may make; see `RateLimiter`.
         most_requests: so many are answered at once.
@@ -55,6 +57,7 @@ class AccessGuardMiddleware:
         self,
         app: ASGIApp,
         *,
+        access: Callable[[], AccessService],
         token_required: bool,
         rate_per_s: float,
         burst: int,
@@ -62,6 +65,7 @@ class AccessGuardMiddleware:
         monotonic: Callable[[], float] = time.monotonic,
     ) -> None:
         self._app = app
+        self._access = access
         self._token_required = token_required
         self._limiter = RateLimiter(rate_per_s, burst, monotonic=monotonic)
         self._most_requests = most_requests
@@ -108,7 +112,7 @@ class AccessGuardMiddleware:
                 raise _Refused(_no_token())
             return None, ""
         token = _bearer(sent)
-        client = await self._client(scope, token, for_stop=row == STOP)
+        client = await self._client(token, for_stop=row == STOP)
         if limited:
             self._count(peer if client is None else f"token {client.id}")
         if client is None:
@@ -117,10 +121,9 @@ class AccessGuardMiddleware:
             raise _Refused(_insufficient_scope(wanted))
         return client, token
 
-    async def _client(self, scope: Scope, token: str, *, for_stop: bool) -> Client | None:
-        access: AccessService = scope["app"].state.access
+    async def _client(self, token: str, *, for_stop: bool) -> Client | None:
         try:
-            return await access.client(token, for_stop=for_stop)
+            return await self._access().client(token, for_stop=for_stop)
         except (SQLAlchemyError, TimeoutError):
             raise _Refused(_store_unavailable()) from None
 
@@ -131,7 +134,6 @@ class AccessGuardMiddleware:
 
     async def _watched(self, scope: Scope, receive: Receive, send: Send, token: str) -> None:
         """Let it go on until it ends or its token is revoked."""
-        access: AccessService = scope["app"].state.access
         asked_at = self._monotonic()
         revoked = False
 
@@ -140,7 +142,7 @@ class AccessGuardMiddleware:
             if not revoked and self._monotonic() - asked_at >= TRUSTED_S:
                 asked_at = self._monotonic()
                 try:
-                    revoked = await access.client(token, for_stop=True) is None
+                    revoked = await self._access().client(token, for_stop=True) is None
                 except (SQLAlchemyError, TimeoutError):
                     # A store that is away revokes nothing: an arm may hang on this link.
                     return False

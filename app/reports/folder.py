@@ -12,9 +12,9 @@ import orjson
 
 from app.reports.csv_table import comparison_to_csv
 from app.reports.html import comparison_to_html
+from app.reports.json_values import comparison_to_wire
 from app.reports.markdown import comparison_to_markdown
 from app.reports.picture import PICTURE_FILES
-from app.reports.wire import comparison_to_wire
 from solver.comparison.contest import Contest
 from solver.comparison.result import Comparison
 

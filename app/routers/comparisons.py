@@ -5,15 +5,17 @@ from fastapi import APIRouter, Request, Response
 from pydantic import MISSING
 
 from app.reports.html import content_security_policy
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.dependencies import TheComparisons, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.comparisons import (
     ComparisonAnswer,
     ComparisonRequest,
     ScenarioAnswer,
     ScenariosAnswer,
 )
-from app.services.comparisons.service import ComparisonService, location_of
+from app.services.comparisons.service import location_of
 from app.store import NewKey
 from solver.comparison.registry import SCENARIOS
 
@@ -50,13 +52,15 @@ def list_scenarios() -> Response:
     },
     openapi_extra=with_key(body_of(ComparisonRequest)),
 )
-async def create_comparison(request: Request) -> Response:
+async def create_comparison(
+    request: Request, comparisons: TheComparisons, keys: TheIdempotency
+) -> Response:
     """It is queued; comparisons run one after the other, about a minute each."""
     body = await json_body(request)
 
     async def create(key: NewKey | None) -> Response:
         given = ComparisonRequest.from_json(body)
-        document = await _service(request).create(
+        document = await comparisons.create(
             given.scenario,
             None if given.methods is MISSING else tuple(given.methods),
             None if given.repeats is MISSING else given.repeats,
@@ -69,7 +73,7 @@ async def create_comparison(request: Request) -> Response:
             headers={"Location": location_of(document)},
         )
 
-    return await once(request, body, create)
+    return await once(keys, request, body, create)
 
 
 @router.get(
@@ -85,17 +89,19 @@ async def create_comparison(request: Request) -> Response:
         **problem_answers(404, 500),
     },
 )
-async def get_comparison(comparison_id: str, request: Request) -> Response:
+async def get_comparison(
+    comparison_id: str, request: Request, comparisons: TheComparisons
+) -> Response:
     """As JSON; as a page for browsers, which loads itself again until there is a report."""
     headers = {"Vary": "Accept"}
     if _wants_page(request.headers.get("accept", "")):
-        page = await _service(request).page(comparison_id)
+        page = await comparisons.page(comparison_id)
         headers |= {
             "Content-Security-Policy": f"{content_security_policy()}; frame-ancestors 'none'",
             "X-Content-Type-Options": "nosniff",
         }
         return Response(page, media_type=HTML, headers=headers)
-    document = await _service(request).document(comparison_id)
+    document = await comparisons.document(comparison_id)
     return Response(orjson.dumps(document), media_type="application/json", headers=headers)
 
 
@@ -103,8 +109,3 @@ def _wants_page(accept: str) -> bool:
     kinds = [part.partition(";")[0].strip() for part in accept.lower().split(",")]
     wanted = [kind for kind in kinds if kind in (HTML, "application/json")]
     return wanted[:1] == [HTML]
-
-
-def _service(request: Request) -> ComparisonService:
-    service: ComparisonService = request.app.state.comparisons
-    return service

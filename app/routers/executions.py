@@ -2,8 +2,10 @@
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.routers.common import body_of, json_body, lease_of, problem_answers
+from app.routers.dependencies import TheExecutions, TheExecutionStore, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body, lease_of
 from app.schemas.executions import (
     ExecutionAnswer,
     ExecutionRequest,
@@ -11,9 +13,8 @@ from app.schemas.executions import (
     ExecutionSummary,
 )
 from app.services.robots.execution_record import Execution, execution_to_json
-from app.services.robots.executions import ExecutionService
 from app.services.store_calls import store_call
-from app.store import ExecutionRow, ExecutionStore, NewKey
+from app.store import ExecutionRow, NewKey
 from hardware.clock import instant_text
 
 router = APIRouter(prefix="/v1/executions", tags=["executions"])
@@ -33,7 +34,9 @@ router = APIRouter(prefix="/v1/executions", tags=["executions"])
     },
     openapi_extra=with_key(body_of(ExecutionRequest)),
 )
-async def create_execution(request: Request) -> Response:
+async def create_execution(
+    request: Request, executions: TheExecutions, keys: TheIdempotency
+) -> Response:
     """Motions are built and verified anew, then sent once; the arm moves if its worker agrees.
 
     A robot has one active execution at most. Whoever sends it again without a key, because no
@@ -43,14 +46,14 @@ async def create_execution(request: Request) -> Response:
 
     async def create(key: NewKey | None) -> Response:
         given = ExecutionRequest.from_json(body)
-        execution = await _service(request).create(
+        execution = await executions.create(
             given.plan_id, given.robot, key, lease_id=lease_of(request)
         )
         answer = _accepted(execution)
         answer.headers["Location"] = execution.location
         return answer
 
-    return await once(request, body, create)
+    return await once(keys, request, body, create)
 
 
 @router.get(
@@ -60,10 +63,10 @@ async def create_execution(request: Request) -> Response:
     responses={200: {"model": ExecutionsAnswer}, **problem_answers(500)},
 )
 async def list_executions(
-    request: Request, robot: str = Query(default="", description="only this robot's")
+    store: TheExecutionStore,
+    robot: str = Query(default="", description="only this robot's"),
 ) -> Response:
     """Without their targets."""
-    store: ExecutionStore = request.app.state.execution_store
     rows = await store_call(store.newest, robot)
     answer = ExecutionsAnswer(executions=[_summary(row) for row in rows])
     return Response(answer.model_dump_json(), media_type="application/json")
@@ -75,9 +78,9 @@ async def list_executions(
     summary="How an execution stands",
     responses={200: {"model": ExecutionAnswer}, **problem_answers(404, 500)},
 )
-async def get_execution(execution_id: str, request: Request) -> Response:
+async def get_execution(execution_id: str, executions: TheExecutions) -> Response:
     """As its worker told it last."""
-    document = await _service(request).document(execution_id)
+    document = await executions.document(execution_id)
     return Response(document, media_type="application/json")
 
 
@@ -88,9 +91,11 @@ async def get_execution(execution_id: str, request: Request) -> Response:
     summary="Slow down to a stand on the path",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
 )
-async def pause_execution(execution_id: str, request: Request) -> Response:
+async def pause_execution(
+    execution_id: str, request: Request, executions: TheExecutions
+) -> Response:
     """Only one that is executing; it is paused when its status says so."""
-    return _accepted(await _service(request).pause(execution_id, lease_id=lease_of(request)))
+    return _accepted(await executions.pause(execution_id, lease_id=lease_of(request)))
 
 
 @router.post(
@@ -100,9 +105,11 @@ async def pause_execution(execution_id: str, request: Request) -> Response:
     summary="Go on along the path",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
 )
-async def resume_execution(execution_id: str, request: Request) -> Response:
+async def resume_execution(
+    execution_id: str, request: Request, executions: TheExecutions
+) -> Response:
     """Only one that is paused."""
-    return _accepted(await _service(request).resume(execution_id, lease_id=lease_of(request)))
+    return _accepted(await executions.resume(execution_id, lease_id=lease_of(request)))
 
 
 @router.post(
@@ -112,14 +119,11 @@ async def resume_execution(execution_id: str, request: Request) -> Response:
     summary="Slow down to a stand on the path and end there",
     responses={202: {"model": ExecutionAnswer}, **problem_answers(404, 409, 500)},
 )
-async def cancel_execution(execution_id: str, request: Request) -> Response:
+async def cancel_execution(
+    execution_id: str, request: Request, executions: TheExecutions
+) -> Response:
     """One that the arm cannot have begun is canceled at once, another when its status says so."""
-    return _accepted(await _service(request).cancel(execution_id, lease_id=lease_of(request)))
-
-
-def _service(request: Request) -> ExecutionService:
-    service: ExecutionService = request.app.state.executions
-    return service
+    return _accepted(await executions.cancel(execution_id, lease_id=lease_of(request)))
 
 
 def _accepted(execution: Execution) -> Response:

@@ -4,10 +4,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
 
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.dependencies import TheFrames, TheIdempotency
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.frames import FrameAnswer, FrameRegistrationRequest, FrameRequest, FramesAnswer
-from app.services.plans.frames import NAME_PATTERN, FrameService, location_of
+from app.services.plans.registered_frames import NAME_PATTERN, location_of
 from app.services.store_calls import store_call
 from app.store import NewKey
 
@@ -31,9 +33,9 @@ _LOCATION: dict[str, Any] = {"Location": {"schema": {"type": "string"}}}
     summary="All registered frames",
     responses={200: {"model": FramesAnswer}, **problem_answers(500)},
 )
-async def list_frames(request: Request) -> Response:
+async def list_frames(frames: TheFrames) -> Response:
     """By name, without `residuals_m`; `base`, the robot's own, is not among them."""
-    body = await store_call(_service(request).documents)
+    body = await store_call(frames.documents)
     return Response(body, media_type="application/json")
 
 
@@ -49,14 +51,14 @@ async def list_frames(request: Request) -> Response:
     },
     openapi_extra=body_of(FrameRequest),
 )
-async def put_frame(name: Name, request: Request) -> Response:
+async def put_frame(name: Name, request: Request, frames: TheFrames) -> Response:
     """The pose of the frame in the robot's base frame (base_from_frame), with one rotation.
 
     `check_pairs` are compared with it, and warnings tell whether it seems inverted, or the points
     scaled or mirrored; it is registered all the same. Plans that exist do not change.
     """
     body = await json_body(request)
-    stored = await store_call(lambda: _service(request).put(name, FrameRequest.from_json(body)))
+    stored = await store_call(lambda: frames.put(name, FrameRequest.from_json(body)))
     if stored.is_new:
         return _created(name, stored.document)
     return Response(stored.document, media_type="application/json")
@@ -73,7 +75,9 @@ async def put_frame(name: Name, request: Request) -> Response:
     },
     openapi_extra=with_key(body_of(FrameRegistrationRequest)),
 )
-async def register_frame(name: Name, request: Request) -> Response:
+async def register_frame(
+    name: Name, request: Request, frames: TheFrames, keys: TheIdempotency
+) -> Response:
     """By least squares from points measured in the frame and in the robot's base frame.
 
     It is registered with its warnings, in place of what had the name. Points on a line, mirror
@@ -83,11 +87,11 @@ async def register_frame(name: Name, request: Request) -> Response:
 
     async def create(key: NewKey | None) -> Response:
         stored = await store_call(
-            lambda: _service(request).register(name, FrameRegistrationRequest.from_json(body), key)
+            lambda: frames.register(name, FrameRegistrationRequest.from_json(body), key)
         )
         return _created(name, stored.document)
 
-    return await once(request, body, create)
+    return await once(keys, request, body, create)
 
 
 @router.get(
@@ -96,9 +100,9 @@ async def register_frame(name: Name, request: Request) -> Response:
     summary="One frame",
     responses={200: {"model": FrameAnswer}, **problem_answers(404, 500)},
 )
-async def get_frame(name: Name, request: Request) -> Response:
+async def get_frame(name: Name, frames: TheFrames) -> Response:
     """As it was answered when it was registered."""
-    document = await store_call(_service(request).document, name)
+    document = await store_call(frames.document, name)
     return Response(document, media_type="application/json")
 
 
@@ -109,17 +113,12 @@ async def get_frame(name: Name, request: Request) -> Response:
     status_code=204,
     responses={204: {"description": "Removed"}, **problem_answers(404, 500)},
 )
-async def delete_frame(name: Name, request: Request) -> Response:
+async def delete_frame(name: Name, frames: TheFrames) -> Response:
     """Plans that were made in it stay, and can be executed."""
-    await store_call(_service(request).remove, name)
+    await store_call(frames.remove, name)
     return Response(status_code=204)
 
 
 def _created(name: str, document: str) -> Response:
     headers = {"Location": location_of(name)}
     return Response(document, 201, media_type="application/json", headers=headers)
-
-
-def _service(request: Request) -> FrameService:
-    service: FrameService = request.app.state.frames
-    return service

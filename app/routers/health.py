@@ -1,15 +1,14 @@
 """Whether the service lives, and whether it can work."""
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.errors import ProblemError
-from app.guards.traffic import RETRY_S, Traffic
-from app.routers.common import problem_answers
+from app.guards.traffic import RETRY_S
+from app.routers.dependencies import ThePlanStore, TheSolving, TheTraffic
+from app.routers.problem_answers import problem_answers
 from app.schemas.answers import HealthAnswer
-from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
-from app.store import PlanStore
 
 router = APIRouter(tags=["health"])
 
@@ -26,13 +25,12 @@ async def get_health() -> HealthAnswer:
     summary="The solver is warm and the store answers",
     responses=problem_answers(503),
 )
-async def get_readiness(request: Request) -> HealthAnswer:
+async def get_readiness(
+    traffic: TheTraffic, solving: TheSolving, store: ThePlanStore
+) -> HealthAnswer:
     """503 until then, and again as soon as the service is stopping."""
-    traffic: Traffic = request.app.state.traffic
     if traffic.is_stopping:
         raise ProblemError(503, "stopping", "The service is stopping.", retry_after_s=RETRY_S)
-    solving: SolvingService = request.app.state.solving
-    store: PlanStore = request.app.state.store
     if not solving.is_ready:
         raise ProblemError(503, "not_ready", "The solver is warming up.")
     try:

@@ -61,6 +61,7 @@ def with_key(operation: dict[str, Any], meaning: str = FOR_EVER) -> dict[str, An
 
 
 async def once(
+    keys: IdempotencyService,
     request: Request,
     body: bytes,
     create: Callable[[NewKey | None], Awaitable[Response]],
@@ -69,6 +70,7 @@ async def once(
     """The answer that `create` makes, or the one that is stored under the request's key.
 
     Args:
+        keys: those that were used.
         request: that may have a key.
         body: of the request, as it came.
         create: makes the answer; it must store the key, if there is one, in the transaction that
@@ -77,14 +79,14 @@ async def once(
             location; it blocks.
 
     Raises:
-        ProblemError: 422, the key makes no sense or stands for another body; whatever `create`
-            raises.
+        ProblemError: 422, the key makes no sense; 404, what was created is not there any more.
+        InvalidRequest: the key stands for another body.
+        Exception: whatever `create` raises.
     """
     key = await new_key(request, body)
     if key is None:
         return await create(None)
-    service: IdempotencyService = request.app.state.idempotency
-    answer = await service.once(key, lambda: create(key))
+    answer = await keys.once(key, lambda: create(key))
     if isinstance(answer, KeyedAnswer):
         return await _replayed(answer, read)
     return answer

@@ -10,12 +10,13 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool
 from starlette.types import Send
 
-from app.routers.common import NDJSON, problem_answers, wants_lines
+from app.routers.dependencies import TheJobs, ThePlanStore
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import NDJSON, wants_lines
 from app.schemas.jobs import JobAnswer, JobResultsAnswer, JobsAnswer
-from app.services.jobs.service import JobService
+from app.schemas.present import present
 from app.services.plans.parts import joined_arrays
 from app.services.plans.plan_reading import lines_of
-from app.services.plans.wire import present
 from app.services.store_calls import store_call
 from app.store import JobRow, PlanStore
 from hardware.clock import instant_text
@@ -33,10 +34,10 @@ HEARTBEAT_S: Final = 5.0
     summary="The newest 50, newest first",
     responses={200: {"model": JobsAnswer}, **problem_answers(500)},
 )
-async def list_jobs(request: Request) -> Response:
+async def list_jobs(jobs: TheJobs) -> Response:
     """Ended ones too."""
-    jobs = [job_document(job) for job in await _service(request).newest()]
-    return Response(orjson.dumps({"jobs": jobs}), media_type="application/json")
+    newest = [job_document(job) for job in await jobs.newest()]
+    return Response(orjson.dumps({"jobs": newest}), media_type="application/json")
 
 
 @router.get(
@@ -45,9 +46,9 @@ async def list_jobs(request: Request) -> Response:
     summary="How a job stands",
     responses={200: {"model": JobAnswer}, **problem_answers(404, 500)},
 )
-async def get_job(job_id: str, request: Request) -> Response:
+async def get_job(job_id: str, jobs: TheJobs) -> Response:
     """Progress, in finished targets."""
-    return Response(job_json(await _service(request).job(job_id)), media_type="application/json")
+    return Response(job_json(await jobs.job(job_id)), media_type="application/json")
 
 
 @router.delete(
@@ -57,9 +58,9 @@ async def get_job(job_id: str, request: Request) -> Response:
     summary="Cancel a job, whatever it does",
     responses={202: {"model": JobAnswer}, **problem_answers(404, 409, 500)},
 )
-async def cancel_job(job_id: str, request: Request) -> Response:
+async def cancel_job(job_id: str, jobs: TheJobs) -> Response:
     """Only one that has not ended. What is solved stays readable."""
-    job = await _service(request).cancel(job_id)
+    job = await jobs.cancel(job_id)
     return Response(job_json(job), 202, media_type="application/json")
 
 
@@ -78,9 +79,9 @@ async def cancel_job(job_id: str, request: Request) -> Response:
     },
     response_class=Response,
 )
-async def follow_job(job_id: str, request: Request) -> Response:
+async def follow_job(job_id: str, jobs: TheJobs) -> Response:
     """Ends with the job, or with the service: then ask again."""
-    changes = _service(request).changes(job_id, HEARTBEAT_S)
+    changes = jobs.changes(job_id, HEARTBEAT_S)
     first = await anext(changes)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
     return StreamingResponse(_events(first, changes), media_type=EVENTS, headers=headers)
@@ -113,15 +114,16 @@ def _event(job: JobRow) -> bytes:
         **problem_answers(404, 500),
     },
 )
-async def get_job_results(job_id: str, request: Request) -> Response:
+async def get_job_results(
+    job_id: str, request: Request, jobs: TheJobs, store: ThePlanStore
+) -> Response:
     """In the order that they are solved in, which with `order: optimal` need not be the plan's."""
-    service, store = _service(request), _plans(request)
     headers = {"Vary": "Accept"}
     if not wants_lines(request):
-        await service.job(job_id)
+        await jobs.job(job_id)
         pieces = iterate_in_threadpool(_array(store, job_id))
         return StreamingResponse(pieces, media_type="application/json", headers=headers)
-    changes = service.changes(job_id, HEARTBEAT_S)
+    changes = jobs.changes(job_id, HEARTBEAT_S)
     lines = _following(store, job_id, await anext(changes), changes)
     return _Lines(lines, media_type=NDJSON, headers=headers)
 
@@ -189,13 +191,3 @@ def job_json(job: JobRow) -> str:
 
 def _instant(instant: datetime | None) -> str | None:
     return None if instant is None else instant_text(instant)
-
-
-def _service(request: Request) -> JobService:
-    service: JobService = request.app.state.jobs
-    return service
-
-
-def _plans(request: Request) -> PlanStore:
-    store: PlanStore = request.app.state.store
-    return store

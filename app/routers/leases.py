@@ -8,8 +8,10 @@ from pydantic import MISSING
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.dependencies import TheLeases
 from app.routers.idempotency_key import CREATED_HEADERS, REPLAYED, new_key, with_key
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.leases import (
     USUAL_LEASE_S,
     LeaseAnswer,
@@ -17,8 +19,8 @@ from app.schemas.leases import (
     LeaseRequest,
     LeaseStateAnswer,
 )
-from app.services.robots.execution_checks import robot_instance
-from app.services.robots.leases import Lease, LeaseService
+from app.services.robots.instances import robot_instance
+from app.services.robots.leases import Lease
 
 AS_LONG_AS_IT_LASTS: Final = (
     "As long as the lease lasts, the same key with the same body gets it again, as it stands then, "
@@ -42,7 +44,7 @@ router = APIRouter(prefix="/v1/robots/{name}/lease", tags=["robots"])
     },
     openapi_extra=with_key(body_of(LeaseRequest), AS_LONG_AS_IT_LASTS),
 )
-async def create_lease(name: str, request: Request) -> Response:
+async def create_lease(name: str, request: Request, leases: TheLeases) -> Response:
     """While it lasts, only requests with the header `Prunus-Lease` start and change executions.
 
     Anybody may still stop the robot. What is being executed goes on when the lease ends. The key
@@ -53,8 +55,8 @@ async def create_lease(name: str, request: Request) -> Response:
     await run_in_threadpool(robot_instance, name)
     duration_s = USUAL_LEASE_S if given.duration_s is MISSING else given.duration_s
     key = await new_key(request, body)
-    before = _service(request).current(name)
-    lease = _service(request).take(name, given.holder, duration_s, key)
+    before = leases.current(name)
+    lease = leases.take(name, given.holder, duration_s, key)
     headers = {"Location": f"/v1/robots/{name}/lease/{lease.id}"}
     if lease is before:
         headers[REPLAYED] = "true"
@@ -67,10 +69,10 @@ async def create_lease(name: str, request: Request) -> Response:
     summary="Who controls a robot",
     responses={200: {"model": LeaseStateAnswer}, **problem_answers(404, 500)},
 )
-async def get_lease(name: str, request: Request) -> Response:
+async def get_lease(name: str, leases: TheLeases) -> Response:
     """404 while nobody has a lease of it."""
     await run_in_threadpool(robot_instance, name)
-    lease = _service(request).current(name)
+    lease = leases.current(name)
     if lease is None:
         raise ProblemError(404, "not_found", "Nobody has a lease of this robot.")
     return Response(orjson.dumps(_state(lease)), media_type="application/json")
@@ -83,12 +85,12 @@ async def get_lease(name: str, request: Request) -> Response:
     responses={200: {"model": LeaseAnswer}, **problem_answers(404, 408, 413, 415, 422, 500)},
     openapi_extra=body_of(LeaseRenewal),
 )
-async def renew_lease(name: str, lease_id: str, request: Request) -> Response:
+async def renew_lease(name: str, lease_id: str, request: Request, leases: TheLeases) -> Response:
     """It lasts from now on. Renew it well before it ends: after that it is 404."""
     given = LeaseRenewal.from_json(await json_body(request))
     await run_in_threadpool(robot_instance, name)
     duration_s = None if given.duration_s is MISSING else given.duration_s
-    return _answer(_service(request).renew(name, lease_id, duration_s), 200, {})
+    return _answer(leases.renew(name, lease_id, duration_s), 200, {})
 
 
 @router.delete(
@@ -98,16 +100,11 @@ async def renew_lease(name: str, lease_id: str, request: Request) -> Response:
     summary="Give control of a robot back",
     responses=problem_answers(404, 500),
 )
-async def delete_lease(name: str, lease_id: str, request: Request) -> Response:
+async def delete_lease(name: str, lease_id: str, leases: TheLeases) -> Response:
     """Others may take it at once."""
     await run_in_threadpool(robot_instance, name)
-    _service(request).give_back(name, lease_id)
+    leases.give_back(name, lease_id)
     return Response(status_code=204)
-
-
-def _service(request: Request) -> LeaseService:
-    service: LeaseService = request.app.state.leases
-    return service
 
 
 def _state(lease: Lease) -> dict[str, str | float]:

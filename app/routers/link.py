@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from sqlalchemy.exc import SQLAlchemyError
 
+from app.routers.dependencies import TheExecutions, TheLinks
 from app.services.robots.execution_record import LINK_LOST, SERVICE_RESTARTED, STATUSES, WORKER_LOST
 from app.services.robots.executions import ExecutionService
 from app.services.robots.links import NOT_A_MESSAGE, SILENT, Link, LinkRefused, LinkService
@@ -44,10 +45,10 @@ class _End:
 
 
 @router.websocket("/v1/robots/{name}/link")
-async def robot_link(websocket: WebSocket, name: str) -> None:
+async def robot_link(
+    websocket: WebSocket, name: str, links: TheLinks, executions: TheExecutions
+) -> None:
     """One worker a robot. The first message is its hello; see `hardware.link.messages`."""
-    links: LinkService = websocket.app.state.links
-    executions: ExecutionService = websocket.app.state.executions
     await websocket.accept()
     try:
         hello = await _hello(websocket)

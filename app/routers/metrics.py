@@ -1,11 +1,11 @@
 """Metrics for Prometheus."""
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Response
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.observation.metrics import MEDIA_TYPE, Metrics
-from app.routers.common import problem_answers
-from app.services.robots.links import LinkService
+from app.observation.metrics import MEDIA_TYPE
+from app.routers.dependencies import TheEngine, TheLinks, TheMetrics
+from app.routers.problem_answers import problem_answers
 from app.services.store_calls import store_call
 from app.store.counts import stored_counts
 from app.store.failures import StoreBusy
@@ -23,13 +23,11 @@ router = APIRouter(tags=["health"])
         **problem_answers(500),
     },
 )
-async def get_metrics(request: Request) -> Response:
+async def get_metrics(metrics: TheMetrics, links: TheLinks, engine: TheEngine) -> Response:
     """What the store holds is left as it was counted last when it does not answer."""
-    metrics: Metrics = request.app.state.metrics
-    links: LinkService = request.app.state.links
     metrics.connected(links.count)
     try:
-        counts = await store_call(stored_counts, request.app.state.engine)
+        counts = await store_call(stored_counts, engine)
     except StoreBusy:
         metrics.store_failed()
     except SQLAlchemyError:

@@ -8,9 +8,11 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import NDJSON, body_of, json_body, problem_answers, wants_lines
+from app.routers.dependencies import AllServices, Services, ThePlanStore
 from app.routers.idempotency_key import CREATED_HEADERS, once, with_key
 from app.routers.jobs import job_json
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import NDJSON, body_of, json_body, wants_lines
 from app.schemas.answers import PlanAnswer
 from app.schemas.jobs import JobAnswer
 from app.schemas.requests import PlanRequest
@@ -22,12 +24,9 @@ from app.services.plans.batch_reading import (
     PlanOrder,
     read_batch,
 )
-from app.services.plans.frames import FrameService
 from app.services.plans.plan_reading import plan_chunks, plan_lines
-from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
-from app.settings import Settings
-from app.store import NewKey, PlanStore, new_entry
+from app.store import CREATED, NewKey, PlanStore, new_entry
 
 RESPOND_ASYNC: Final = "respond-async"
 PREFER: Final = {
@@ -67,7 +66,7 @@ router = APIRouter(prefix="/v1/plans", tags=["plans"])
     },
     openapi_extra=with_key({"parameters": [PREFER], **body_of(PlanRequest)}),
 )
-async def create_plan(request: Request) -> Response:
+async def create_plan(request: Request, services: AllServices) -> Response:
     """Targets that cannot be reached come back infeasible, with a reason.
 
     With `Prefer: respond-async`, and always above the limit of targets for an answer at once, the
@@ -75,29 +74,30 @@ async def create_plan(request: Request) -> Response:
     """
     body = await json_body(request)
     return await once(
+        services.idempotency,
         request,
         body,
-        lambda key: _create(request, body, key),
-        read=lambda plan_id: _stored_answer(request, plan_id),
+        lambda key: _create(services, body, key, preferred=prefers_async(request)),
+        read=lambda plan_id: _stored_answer(services.plan_store, plan_id),
     )
 
 
-async def _create(request: Request, body: bytes, key: NewKey | None) -> Response:
-    preferred = prefers_async(request)
-    order = await _read(request, body, preferred)
+async def _create(
+    services: Services, body: bytes, key: NewKey | None, *, preferred: bool
+) -> Response:
+    order = await _read(services, body, preferred)
     if isinstance(order, JobOrder):
-        return await _create_job(request, order, key, preferred)
+        return await _create_job(services.jobs, order, key, preferred)
     plan_id = uuid.uuid4().hex
     location = f"/v1/plans/{plan_id}"
-    solving: SolvingService = request.app.state.solving
-    answer = await solving.solve(order.problem, plan_id)
+    answer = await services.solving.solve(order.problem, plan_id)
     await store_call(
-        _store(request).add,
+        services.plan_store.add,
         plan_id,
         robot=order.problem.robot.name,
         request=order.request,
         answer=answer.decode(),
-        key=new_entry(key, 201, location),
+        key=new_entry(key, CREATED, location),
     )
     return Response(
         answer,
@@ -108,9 +108,8 @@ async def _create(request: Request, body: bytes, key: NewKey | None) -> Response
 
 
 async def _create_job(
-    request: Request, order: JobOrder, key: NewKey | None, preferred: bool
+    jobs: JobService, order: JobOrder, key: NewKey | None, preferred: bool
 ) -> Response:
-    jobs: JobService = request.app.state.jobs
     job = await jobs.create(order, job_json, key)
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if preferred:
@@ -124,18 +123,16 @@ def prefers_async(request: Request) -> bool:
     return any(entry.partition(";")[0].strip().lower() == RESPOND_ASYNC for entry in preferences)
 
 
-async def _read(request: Request, body: bytes, preferred: bool) -> PlanOrder | JobOrder:
-    settings: Settings = request.app.state.settings
-    frames: FrameService = request.app.state.frames
+async def _read(services: Services, body: bytes, preferred: bool) -> PlanOrder | JobOrder:
+    settings, frames = services.settings, services.frames
     limits = BatchLimits(settings.sync_targets_limit, settings.job_targets_limit)
     if len(body) <= LARGE_BODY_BYTES:
         return await run_in_threadpool(read_batch, body, limits, preferred, frames.transform)
-    solving: SolvingService = request.app.state.solving
-    return await solving.read(body, limits, preferred, await store_call(frames.transforms))
+    return await services.solving.read(body, limits, preferred, await store_call(frames.transforms))
 
 
-def _stored_answer(request: Request, plan_id: str) -> str | None:
-    plan = _store(request).plan(plan_id)
+def _stored_answer(store: PlanStore, plan_id: str) -> str | None:
+    plan = store.plan(plan_id)
     return None if plan is None else plan.answer
 
 
@@ -151,9 +148,8 @@ def _stored_answer(request: Request, plan_id: str) -> str | None:
         **problem_answers(404, 500),
     },
 )
-async def get_plan(plan_id: str, request: Request) -> Response:
+async def get_plan(plan_id: str, request: Request, store: ThePlanStore) -> Response:
     """As it was answered, byte for byte."""
-    store = _store(request)
     plan = await store_call(store.plan, plan_id)
     if plan is None:
         raise ProblemError(404, "not_found", "There is no plan of this id.")
@@ -165,8 +161,3 @@ async def get_plan(plan_id: str, request: Request) -> Response:
         return Response(plan.answer, media_type="application/json", headers=headers)
     pieces = iterate_in_threadpool(plan_chunks(store, plan_id, plan))
     return StreamingResponse(pieces, media_type="application/json", headers=headers)
-
-
-def _store(request: Request) -> PlanStore:
-    store: PlanStore = request.app.state.store
-    return store

@@ -7,12 +7,12 @@ from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import ProblemError
-from app.routers.common import lease_of, problem_answers
+from app.routers.dependencies import TheExecutions, TheLeases, TheLinks
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import lease_of
 from app.schemas.executions import AcknowledgeAnswer, RobotStateAnswer, StopAnswer
-from app.services.plans.wire import present
-from app.services.robots.execution_checks import no_worker, robot_instance
-from app.services.robots.executions import ExecutionService
-from app.services.robots.leases import LeaseService
+from app.schemas.present import present
+from app.services.robots.instances import no_worker, robot_instance
 from app.services.robots.links import ANSWER_S, Link, LinkService
 from hardware.link.messages import Acknowledge, AcknowledgeReport, Stop, StopReport
 
@@ -30,9 +30,9 @@ NO_ANSWER = (
     summary="The robot as it is now",
     responses={200: {"model": RobotStateAnswer}, **problem_answers(404, 500)},
 )
-async def get_robot_state(name: str, request: Request) -> Response:
+async def get_robot_state(name: str, links: TheLinks) -> Response:
     """As its worker described it last; without a worker nothing is known of it."""
-    link = _links(request).get(name)
+    link = links.get(name)
     if link is not None:
         return _json(_state(link))
     instance = await run_in_threadpool(robot_instance, name)
@@ -52,14 +52,13 @@ async def get_robot_state(name: str, request: Request) -> Response:
     summary="Stop at once, whatever the robot does",
     responses={200: {"model": StopAnswer}, **problem_answers(404, 500, 503)},
 )
-async def stop_robot(name: str, request: Request) -> Response:
+async def stop_robot(name: str, links: TheLinks, executions: TheExecutions) -> Response:
     """Ahead of everything else, in every state. What has not begun yet will not begin.
 
     This is no emergency stop: it needs the service, the link and the worker. Cutting the power
     needs none of them.
     """
-    link = await _link(name, request, "Nothing was stopped.")
-    executions: ExecutionService = request.app.state.executions
+    link = await _link(name, links, "Nothing was stopped.")
     executions.withdraw(name)
     report = await link.ask(Stop)
     if not isinstance(report, StopReport):
@@ -81,11 +80,12 @@ async def stop_robot(name: str, request: Request) -> Response:
     summary="A person has seen the faults",
     responses={200: {"model": AcknowledgeAnswer}, **problem_answers(404, 409, 500, 503)},
 )
-async def acknowledge_faults(name: str, request: Request) -> Response:
+async def acknowledge_faults(
+    name: str, request: Request, links: TheLinks, leases: TheLeases
+) -> Response:
     """The worker checks again and clears what is gone; the answer has what is left."""
-    leases: LeaseService = request.app.state.leases
     leases.check(name, lease_of(request))
-    link = await _link(name, request, "Nothing was acknowledged.")
+    link = await _link(name, links, "Nothing was acknowledged.")
     report = await link.ask(Acknowledge)
     if not isinstance(report, AcknowledgeReport):
         detail = f"The worker did not answer within {ANSWER_S:g} s."
@@ -93,13 +93,8 @@ async def acknowledge_faults(name: str, request: Request) -> Response:
     return _json({"faults": report.faults})
 
 
-def _links(request: Request) -> LinkService:
-    links: LinkService = request.app.state.links
-    return links
-
-
-async def _link(name: str, request: Request, consequence: str) -> Link:
-    link = _links(request).get(name)
+async def _link(name: str, links: LinkService, consequence: str) -> Link:
+    link = links.get(name)
     if link is None:
         await run_in_threadpool(robot_instance, name)
         raise no_worker(consequence)

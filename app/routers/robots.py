@@ -2,10 +2,11 @@
 
 from typing import Any
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Response
 from pydantic import MISSING
 
-from app.routers.common import problem_answers
+from app.routers.dependencies import TheLinks
+from app.routers.problem_answers import problem_answers
 from app.schemas.robots import (
     JointAnswer,
     RobotAnswer,
@@ -13,8 +14,7 @@ from app.schemas.robots import (
     RobotSummary,
     ToolAnswer,
 )
-from app.services.robots.execution_checks import robot_instance
-from app.services.robots.links import LinkService
+from app.services.robots.instances import robot_instance
 from hardware.servos.instances import RobotInstance, instance_names, load_instance
 from solver.robots.model import REVOLUTE, Joint
 
@@ -39,9 +39,8 @@ def list_robots() -> Response:
     summary="One robot: joints, limits, tools",
     responses={200: {"model": RobotAnswer}, **problem_answers(404, 500)},
 )
-def get_robot(name: str, request: Request) -> Response:
+def get_robot(name: str, links: TheLinks) -> Response:
     """Denavit-Hartenberg rows are classic; joint vectors are in this order of joints."""
-    links: LinkService = request.app.state.links
     link = links.get(name)
     calibration = MISSING if link is None else list(link.hello.calibration_rad)
     return _json(_answer(robot_instance(name), calibration))

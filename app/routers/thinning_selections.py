@@ -3,11 +3,12 @@
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.routers.common import body_of, json_body, problem_answers
+from app.routers.dependencies import TheSolving
+from app.routers.problem_answers import problem_answers
+from app.routers.requests import body_of, json_body
 from app.schemas.thinning_selections import ThinningSelectionAnswer, ThinningSelectionRequest
 from app.services.plans.batch_reading import LARGE_BODY_BYTES
 from app.services.plans.selecting import selection_to_json
-from app.services.solving.service import SolvingService
 
 router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"])
 
@@ -22,7 +23,7 @@ router = APIRouter(prefix="/v1/thinning-selections", tags=["thinning selections"
     },
     openapi_extra=body_of(ThinningSelectionRequest),
 )
-async def create_thinning_selection(request: Request) -> Response:
+async def create_thinning_selection(request: Request, solving: TheSolving) -> Response:
     """The targets' `id`, `position_m` and `branch_direction` make targets of a plan.
 
     Nothing is stored.
@@ -31,6 +32,5 @@ async def create_thinning_selection(request: Request) -> Response:
     if len(body) <= LARGE_BODY_BYTES:
         answer = await run_in_threadpool(selection_to_json, body)
     else:
-        solving: SolvingService = request.app.state.solving
         answer = await solving.select(body)
     return Response(answer, media_type="application/json")

@@ -1,5 +1,6 @@
-"""What a comparison found; `app.reports.wire` makes it, docs/comparisons.md has more of each field.
+"""What a comparison found; docs/comparisons.md has more of each field.
 
+`app.reports.json_values` makes it.
 Clients must expect new fields and new values of every status and name.
 """
 

@@ -2,8 +2,9 @@
 
 from typing import Any, Final
 
-from app.routers.common import problem_answers
-from app.services.access.scopes import ADMIN, LEASED, OPEN, ROUTES, SCOPES, UNLIMITED
+from app.guards.route_scopes import LEASED, OPEN, ROUTES, UNLIMITED
+from app.routers.problem_answers import problem_answers
+from app.services.access.scopes import ADMIN, SCOPES
 from app.services.robots.leases import LEASE_HEADER
 
 SCHEME: Final = "bearer"

@@ -2,11 +2,8 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from typing import Any, Final
 
 from fastapi import FastAPI
-from fastapi.openapi.utils import get_openapi
-from pydantic.json_schema import models_json_schema
 from sqlalchemy import event
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware.cors import CORSMiddleware
@@ -18,6 +15,7 @@ from app.guards.body_timeout import BodyTimeoutMiddleware
 from app.guards.browser import BrowserGuardMiddleware
 from app.guards.cors import CORS_RULES
 from app.guards.request_log import RequestLogMiddleware
+from app.guards.route_scopes import check_rows
 from app.guards.traffic import StoppingMiddleware, Traffic
 from app.observation.metrics import Metrics
 from app.routers import (
@@ -35,21 +33,13 @@ from app.routers import (
     robots,
     thinning_selections,
 )
-from app.routers.common import problem_answers
-from app.schemas.comparisons import ComparisonRequest
-from app.schemas.executions import ExecutionRequest
-from app.schemas.frames import FrameRegistrationRequest, FrameRequest
-from app.schemas.leases import LeaseRenewal, LeaseRequest
-from app.schemas.problem_details import ProblemDetails
-from app.schemas.requests import PlanRequest
-from app.schemas.thinning_selections import ThinningSelectionRequest
-from app.server.access_document import describe_access
-from app.services.access.scopes import check_rows
+from app.routers.dependencies import Services, keep_services, services_of
+from app.server.openapi_document import openapi_document
 from app.services.access.service import AccessService
 from app.services.comparisons.service import ComparisonService
 from app.services.idempotency import IdempotencyService
 from app.services.jobs.service import JobService
-from app.services.plans.frames import FrameService
+from app.services.plans.registered_frames import FrameService
 from app.services.robots.executions import ExecutionService
 from app.services.robots.leases import LeaseService
 from app.services.robots.links import LinkService
@@ -68,26 +58,36 @@ from app.store import (
 from app.version import prunus_version
 
 
-def create_app(settings: Settings) -> FastAPI:
-    """The application; it touches nothing outside before it is started."""
+def create_app(settings: Settings, traffic: Traffic | None = None) -> FastAPI:
+    """The application; it touches nothing outside before it is started.
+
+    Args:
+        settings: of the service.
+        traffic: known to whoever serves the application, and tells it of its end.
+    """
+    counters = Metrics(prunus_version())
+    traffic = traffic or Traffic()
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with _running_services(settings, counters, traffic) as services:
+            keep_services(app, services)
+            yield
+
     app = FastAPI(
         title="Prunus",
         version=prunus_version(),
         description="Decides how a robot arm reaches for blossoms in a tree. "
         "Metres, radians and seconds in the robot's base frame throughout.",
-        lifespan=_lifespan,
+        lifespan=lifespan,
         # The stock pages load their scripts from elsewhere; app.routers.documentation does not.
         docs_url=None,
         # A client that does not follow redirects would take one for an answer to its batch.
         redirect_slashes=False,
         redoc_url=None,
     )
-    app.state.settings = settings
-    app.state.metrics = Metrics(prunus_version())
-    app.state.traffic = Traffic()
-    app.state.stopping = app.state.traffic.stopping
     # What is added last is outermost.
-    app.add_middleware(StoppingMiddleware, traffic=app.state.traffic)
+    app.add_middleware(StoppingMiddleware, traffic=traffic)
     app.add_middleware(BodyLimitMiddleware, limit_bytes=settings.body_limit_bytes)
     app.add_middleware(
         BodyTimeoutMiddleware,
@@ -96,6 +96,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.add_middleware(
         AccessGuardMiddleware,
+        access=lambda: services_of(app).access,
         token_required=settings.token_required,
         rate_per_s=settings.rate_limit_per_s,
         burst=settings.rate_burst,
@@ -110,8 +111,8 @@ def create_app(settings: Settings) -> FastAPI:
         any_name=settings.token_required,
         origins=settings.cors_origins,
     )
-    app.add_middleware(RequestLogMiddleware, metrics=app.state.metrics, traffic=app.state.traffic)
-    install_error_handlers(app)
+    app.add_middleware(RequestLogMiddleware, metrics=counters, traffic=traffic)
+    install_error_handlers(app, counters.store_failed)
     for module in (
         plans,
         jobs,
@@ -131,106 +132,56 @@ def create_app(settings: Settings) -> FastAPI:
     check_rows(app.routes)
     documentation.mount_files(app)
     # FastAPI's documented way to extend the document is to replace this method.
-    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
+    app.openapi = lambda: openapi_document(app)  # type: ignore[method-assign]
     return app
 
 
 @asynccontextmanager
-async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    settings: Settings = app.state.settings
-    state = app.state
+async def _running_services(
+    settings: Settings, counters: Metrics, traffic: Traffic
+) -> AsyncIterator[Services]:
     engine = await run_in_threadpool(open_engine, settings.resolved_database_url)
-    state.store = PlanStore(engine)
-    state.execution_store = ExecutionStore(engine)
-    state.frames = FrameService(FrameStore(engine))
-    state.idempotency = IdempotencyService(IdempotencyStore(engine))
-    state.links = LinkService()
-    state.engine = engine
-    event.listen(engine, "handle_error", lambda _: state.metrics.store_failed())
-    state.access = AccessService(TokenStore(engine))
-    state.leases = LeaseService()
-    state.solving = SolvingService(
+    event.listen(engine, "handle_error", lambda _: counters.store_failed())
+    plan_store, execution_store = PlanStore(engine), ExecutionStore(engine)
+    links, leases = LinkService(), LeaseService()
+    solving = SolvingService(
         settings.workers,
         settings.most_waiting_plans,
-        state.metrics,
+        counters,
         settings.log_options,
     )
-    state.jobs = JobService(
-        JobStore(engine),
-        workers=settings.job_workers,
-        most_waiting=settings.most_waiting_jobs,
-        logs=settings.log_options,
-        measures=state.metrics,
-        stopping=state.stopping,
+    services = Services(
+        settings=settings,
+        metrics=counters,
+        traffic=traffic,
+        engine=engine,
+        plan_store=plan_store,
+        execution_store=execution_store,
+        access=AccessService(TokenStore(engine)),
+        idempotency=IdempotencyService(IdempotencyStore(engine)),
+        frames=FrameService(FrameStore(engine)),
+        links=links,
+        leases=leases,
+        solving=solving,
+        jobs=JobService(
+            JobStore(engine),
+            workers=settings.job_workers,
+            most_waiting=settings.most_waiting_jobs,
+            logs=settings.log_options,
+            measures=counters,
+            stopping=traffic.stopping,
+        ),
+        executions=ExecutionService(execution_store, plan_store, solving, links, leases),
+        comparisons=ComparisonService(ComparisonStore(engine), solving),
     )
-    state.executions = ExecutionService(
-        state.execution_store, state.store, state.solving, state.links, state.leases
-    )
-    state.comparisons = ComparisonService(ComparisonStore(engine), state.solving)
     try:
-        await state.executions.end_interrupted()
-        await state.comparisons.end_interrupted()
-        await state.jobs.start()
-        yield
+        await services.executions.end_interrupted()
+        await services.comparisons.end_interrupted()
+        await services.jobs.start()
+        yield services
     finally:
-        await state.executions.close()
-        await state.comparisons.close()
-        await state.jobs.close()
-        await state.solving.close()
+        await services.executions.close()
+        await services.comparisons.close()
+        await services.jobs.close()
+        await services.solving.close()
         await run_in_threadpool(engine.dispose)
-
-
-def _openapi(app: FastAPI) -> dict[str, Any]:
-    document = get_openapi(
-        title=app.title, version=app.version, description=app.description, routes=app.routes
-    )
-    # Bodies are parsed by hand, for strictness and for the problem form; so they are added here.
-    for model, mode in (
-        (PlanRequest, "validation"),
-        (ExecutionRequest, "validation"),
-        (ComparisonRequest, "validation"),
-        (ThinningSelectionRequest, "validation"),
-        (FrameRequest, "validation"),
-        (FrameRegistrationRequest, "validation"),
-        (LeaseRequest, "validation"),
-        (LeaseRenewal, "validation"),
-        (ProblemDetails, "serialization"),
-    ):
-        _, definitions = models_json_schema(
-            [(model, mode)],  # type: ignore[list-item]
-            ref_template="#/components/schemas/{model}",
-        )
-        document["components"]["schemas"].update(definitions["$defs"])
-    refused = problem_answers(403)  # by the guard in front of every route
-    failed = problem_answers(503, 507)  # by the database, behind almost all
-    for route, path in document["paths"].items():
-        for operation in path.values():
-            if route.startswith("/v1/"):
-                missing = failed.keys() - {int(code) for code in operation["responses"]}
-                operation["responses"] |= {str(code): failed[code] for code in sorted(missing)}
-            # FastAPI's own form of a validation error, which is never sent.
-            _drop_stock_validation_error(operation["responses"])
-            for parameter in operation.get("parameters", ()):
-                if parameter["name"] in PATH_PARAMETERS:
-                    parameter.setdefault("description", PATH_PARAMETERS[parameter["name"]])
-            operation["responses"] |= {str(code): what for code, what in refused.items()}
-    describe_access(document)
-    for name in ("HTTPValidationError", "ValidationError"):
-        document["components"]["schemas"].pop(name, None)
-    return document
-
-
-PATH_PARAMETERS: Final = {
-    "plan_id": "the plan's id, as Location or the plan has it",
-    "job_id": "the job's id, as Location or the job has it",
-    "execution_id": "the execution's id, as Location or the execution has it",
-    "comparison_id": "the comparison's id, as Location or the comparison has it",
-    "lease_id": "the lease's id, which only its holder knows",
-    "name": "the robot's name, one of GET /v1/robots",
-}
-
-
-def _drop_stock_validation_error(responses: dict[str, Any]) -> None:
-    content = responses.get("422", {}).get("content", {})
-    if "application/json" in content:
-        del responses["422"]

@@ -98,7 +98,8 @@ def run_service(settings: Settings) -> None:
         _check_tokens(settings)
     listener = _bind(settings.host, settings.port)
     configure_logs(settings.log_options)
-    app = create_app(settings)
+    traffic = Traffic()
+    app = create_app(settings, traffic)
     patience = Patience(settings.head_timeout_s, settings.write_timeout_s)
     config = uvicorn.Config(
         app,
@@ -113,7 +114,7 @@ def run_service(settings: Settings) -> None:
         ws_ping_interval=None,  # the link has heartbeats of its own, more of them
         ws_per_message_deflate=False,  # numbers hardly shrink, and compressing holds up the loop
     )
-    server = _Server(config, app.state.traffic, settings.grace_s)
+    server = _Server(config, traffic, settings.grace_s)
     try:
         hold = _hold(settings, server)
     except CannotServe:

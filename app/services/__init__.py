@@ -1,1 +1,1 @@
-"""What routes and commands ask for, without HTTP: a room for each thing served."""
+"""What the routes and the command line do, whoever asks: a room for each thing served."""

@@ -1,8 +1,7 @@
-"""What a service refuses, and why; `app.errors` makes HTTP's problems of these."""
+"""What a service refuses, and why; `app.errors` makes answers of these."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from typing import Any
 
 from pydantic import ValidationError
@@ -36,9 +35,8 @@ class ServiceError(Exception):
         self.retry_after_s = retry_after_s
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # It may be raised in a solver process.
-        rebuilt = partial(type(self), faults=self.faults, retry_after_s=self.retry_after_s)
-        return rebuilt, (self.code, self.detail)
+        # It may be raised in a solver process; Python would make it again from its message alone.
+        return type(self), (self.code, self.detail), self.__dict__
 
 
 class InvalidRequest(ServiceError):
@@ -66,7 +64,11 @@ def invalid_request(faults: Sequence[Fault]) -> InvalidRequest:
 
 @contextmanager
 def told_as_invalid() -> Iterator[None]:
-    """Tell of a request that makes no sense as the InvalidRequest of its faults."""
+    """Tell of a request that makes no sense as the InvalidRequest of its faults.
+
+    Raises:
+        InvalidRequest: it makes no sense.
+    """
     try:
         yield
     except ValidationError as error:

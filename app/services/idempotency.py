@@ -37,7 +37,9 @@ class IdempotencyService:
         against the key that is stored first.
 
         Raises:
-            InvalidRequest: the key stands for another body; whatever `create` raises.
+            InvalidRequest: the key stands for another body.
+            Unavailable: the service is shutting down.
+            Exception: whatever `create` raises.
         """
         lock = self._locks.setdefault((key.scope, key.key), asyncio.Lock())
         try:

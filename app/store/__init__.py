@@ -5,6 +5,8 @@ from app.store.database import open_engine
 from app.store.executions import ExecutionRow, ExecutionStore, RobotBusy
 from app.store.frames import FramesFull, FrameStore, StoredFrame
 from app.store.idempotency import (
+    ACCEPTED,
+    CREATED,
     IdempotencyStore,
     KeyedAnswer,
     KeyTaken,
@@ -19,6 +21,8 @@ from app.store.plans import PlanStore, StoredPlan
 from app.store.tokens import TokenRow, TokenStore
 
 __all__ = [
+    "ACCEPTED",
+    "CREATED",
     "ComparisonStore",
     "ExecutionRow",
     "ExecutionStore",

@@ -8,7 +8,7 @@ from sqlalchemy import Engine, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from app.store.database import writing
-from app.store.idempotency import NewKey, insert_key, new_entry
+from app.store.idempotency import CREATED, NewKey, insert_key, new_entry
 from app.store.instants import utc
 from app.store.tables import FRAMES
 
@@ -77,7 +77,7 @@ class FrameStore:
             created_at = connection.execute(there).scalar_one_or_none()
             if created_at is not None:
                 text = document(utc(created_at), now)
-                insert_key(connection, new_entry(key, 201, location, text))
+                insert_key(connection, new_entry(key, CREATED, location, text))
                 changes = update(FRAMES).where(FRAMES.c.name == name)
                 connection.execute(changes.values(updated_at=now, document=text))
                 return StoredFrame(text, is_new=False)
@@ -85,7 +85,7 @@ class FrameStore:
             if count >= MOST_FRAMES:
                 raise FramesFull
             text = document(now, now)
-            insert_key(connection, new_entry(key, 201, location, text))
+            insert_key(connection, new_entry(key, CREATED, location, text))
             row = {"name": name, "created_at": now, "updated_at": now, "document": text}
             connection.execute(insert(FRAMES), row)
             return StoredFrame(text, is_new=True)

@@ -2,11 +2,18 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import Final
 
 from sqlalchemy import Connection, Engine, insert, select
 from sqlalchemy.exc import IntegrityError
 
 from app.store.tables import IDEMPOTENCY_KEYS
+
+CREATED: Final = 201
+"""The status of the answer to a request that has created something."""
+
+ACCEPTED: Final = 202
+"""The same, for what is still to be done."""
 
 
 class KeyTaken(Exception):

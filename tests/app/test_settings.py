@@ -2,6 +2,7 @@ from urllib.parse import unquote
 
 import pytest
 from pydantic import ValidationError
+from sqlalchemy import make_url
 
 from app.settings import Settings, shown_settings
 
@@ -48,3 +49,9 @@ def test_other_databases_are_refused_without_repeating_them(url: str) -> None:
         Settings(database_url=url)
     told = [entry["msg"] for entry in raised.value.errors()]
     assert not any("pw" in line for line in told)
+
+
+def test_postgresql_urls_take_the_driver_that_is_installed(postgresql_url: str) -> None:
+    url = Settings(database_url=postgresql_url).resolved_database_url
+    assert url.drivername == "postgresql+psycopg"
+    assert make_url(postgresql_url).database == url.database

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.services.jobs.parts import PART_TARGETS
+from app.services.jobs.work import PART_TARGETS
 from app.settings import Settings
 from tests.app.conftest import JOB_S, running_server, wait_until
 from tests.docs.test_documents import ROOT, fences

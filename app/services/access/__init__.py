@@ -1,1 +1,1 @@
-"""Whose token it is, what it allows (a row a route in `scopes.py`), how tokens look."""
+"""Whose token it is, which scopes there are, how tokens look."""

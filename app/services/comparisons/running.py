@@ -8,7 +8,7 @@ from pathlib import Path
 import orjson
 
 from app.reports.html import comparison_to_html
-from app.reports.wire import comparison_to_wire
+from app.reports.json_values import comparison_to_wire
 from app.services.plans.wire import parse_request, problem_from_wire
 from solver.comparison.contest import Contest
 from solver.comparison.registry import SCENARIOS, find_scenario

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import orjson
+from anyio import to_thread
 from sqlalchemy.exc import SQLAlchemyError
-from starlette.concurrency import run_in_threadpool
 
 from app.reports.html import waiting_page
 from app.services.comparisons.running import (
@@ -24,7 +24,7 @@ from app.services.exceptions import NotFound, Unavailable, invalid_request
 from app.services.solving.process import SolverLost
 from app.services.solving.service import SolvingService
 from app.services.store_calls import store_call
-from app.store import ComparisonStore, NewKey, new_entry
+from app.store import ACCEPTED, ComparisonStore, NewKey, new_entry
 from app.store.failures import cause_of
 from hardware.clock import timestamp
 from solver import Fault
@@ -89,7 +89,7 @@ class ComparisonService:
             InvalidRequest: there is no such scenario or method.
             Unavailable: too many are waiting.
         """
-        if faults := await run_in_threadpool(_faults, scenario, methods, repeats):
+        if faults := await to_thread.run_sync(_faults, scenario, methods, repeats):
             raise invalid_request(faults)
         if await store_call(self._store.count_active) >= MOST_ACTIVE:
             raise Unavailable("comparisons_full", f"{MOST_ACTIVE} comparisons are waiting already.")
@@ -106,7 +106,7 @@ class ComparisonService:
             comparison_id,
             scenario=scenario,
             document=text,
-            key=new_entry(key, 202, location_of(document), text),
+            key=new_entry(key, ACCEPTED, location_of(document), text),
         )
         order = ComparisonOrder(scenario, methods, repeats, self._progress_file(comparison_id))
         task = asyncio.create_task(self._run(_Work(document, order)))
@@ -152,7 +152,7 @@ class ComparisonService:
             raise NotFound("not_found", "There is no comparison of this id.")
         document: Document = orjson.loads(text)
         if document["status"] == RUNNING:
-            told = await run_in_threadpool(read_progress, self._progress_file(comparison_id))
+            told = await to_thread.run_sync(read_progress, self._progress_file(comparison_id))
             if told is not None:
                 document["progress"] = {"rows_done": told[0], "rows_total": told[1]}
         return document

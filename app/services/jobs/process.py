@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from app.observation.logs import LogOptions
 from app.observation.measures import PlanFigures
-from app.services.jobs.parts import choose_for_job, load_job, plan_head, solve_part
+from app.services.jobs.work import choose_for_job, load_job, plan_head, solve_part
 from app.services.plans.parts import Totals
 from app.services.solving.process import SolverLost, SolverProcess
 from app.services.solving.work import prepare

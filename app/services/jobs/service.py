@@ -22,7 +22,7 @@ from app.services.plans.batch_reading import JobOrder
 from app.services.solving.pool import RESTART_S
 from app.services.solving.process import SolverLost, SolverNotStarted
 from app.services.store_calls import store_call
-from app.store import JobEnded, JobRow, JobStore, KeyTaken, NewKey, new_entry
+from app.store import ACCEPTED, JobEnded, JobRow, JobStore, KeyTaken, NewKey, new_entry
 from app.store.failures import StoreBusy
 from app.store.jobs import CANCELED, FAILED
 
@@ -125,7 +125,7 @@ class JobService:
                 robot=order.robot,
                 targets=order.targets,
                 request=order.request,
-                entry=lambda row: new_entry(key, 202, f"/v1/jobs/{job_id}", answer_to(row)),
+                entry=lambda row: new_entry(key, ACCEPTED, f"/v1/jobs/{job_id}", answer_to(row)),
             )
         except (StoreBusy, KeyTaken):
             del self._active[job_id]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.schemas.present import present
 from app.schemas.requests import PlanRequest, StoredPlanRequest
 from app.services.plans.sent_frames import FindFrame, pose_to_wire, sent_frame
 from app.version import prunus_version
@@ -154,9 +155,9 @@ def plan_to_wire(plan: Plan, plan_id: str) -> dict[str, Any]:
 
 def _options(options: Options) -> dict[str, Any]:
     values = {entry.name: getattr(options, entry.name) for entry in fields(options)}
-    present = {name: value for name, value in values.items() if value is not None}
     return {
-        name: list(value) if isinstance(value, tuple) else value for name, value in present.items()
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in present(**values).items()
     }
 
 
@@ -244,11 +245,6 @@ def _trajectory(trajectory: Trajectory) -> dict[str, Any]:
             for part in trajectory.segments
         ],
     }
-
-
-def present(**values: Any) -> dict[str, Any]:
-    """The values that are there."""
-    return {name: value for name, value in values.items() if value is not None}
 
 
 def _number(value: float) -> float:

@@ -6,9 +6,10 @@ from typing import Any, Final
 
 import orjson
 
-from app.services.exceptions import Conflict, NotFound, Unavailable, invalid_request
+from app.services.exceptions import Conflict, NotFound, invalid_request
 from app.services.plans.plan_reading import whole_answer
 from app.services.robots.execution_record import Execution, targets_of_plan
+from app.services.robots.instances import robot_instance
 from app.services.robots.links import Link
 from app.services.store_calls import store_call
 from app.store import PlanStore
@@ -69,14 +70,6 @@ def _ordered_plan(plans: PlanStore, plan_id: str, robot: str) -> OrderedPlan:
     )
 
 
-def robot_instance(name: str) -> RobotInstance:
-    """The robot of that name, or NotFound: there is none."""
-    try:
-        return load_instance(name)
-    except UnknownRobot:
-        raise NotFound("not_found", "There is no robot of this name.") from None
-
-
 def _fits(answer: Mapping[str, Any], instance: RobotInstance) -> bool:
     try:
         planned_for = load_instance(answer["robot"])
@@ -87,7 +80,11 @@ def _fits(answer: Mapping[str, Any], instance: RobotInstance) -> bool:
 
 
 def check_worker(plan: OrderedPlan, link: Link) -> None:
-    """Raise Conflict unless this worker can execute that plan now."""
+    """See to it that this worker can execute that plan now.
+
+    Raises:
+        Conflict: it cannot.
+    """
     if link.telemetry is not None and link.telemetry.status == FAULT:
         detail = "The robot has a fault; somebody must look at it and acknowledge it first."
         raise Conflict("fault", detail)
@@ -97,11 +94,6 @@ def check_worker(plan: OrderedPlan, link: Link) -> None:
     if link.hello.tool != plan.tool:
         detail = "The plan was made for another tool than the one that is mounted."
         raise Conflict("tool_mismatch", detail)
-
-
-def no_worker(consequence: str) -> Unavailable:
-    """The refusal for a robot without a worker."""
-    return Unavailable("no_worker", f"No worker is connected. {consequence}")
 
 
 def execution_not_found() -> NotFound:

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import orjson
 
-from app.services.plans.wire import present
+from app.schemas.present import present
 from hardware.link.messages import (
     CANCELED,
     COMPLETED,

@@ -96,7 +96,11 @@ class LeaseService:
         del self._leases[self._own(robot, lease_id).robot]
 
     def check(self, robot: str, lease_id: str) -> None:
-        """Raise Conflict if somebody has a lease of the robot and it is not this one."""
+        """See to it that nobody has a lease of the robot but this one.
+
+        Raises:
+            Conflict: somebody has.
+        """
         lease = self.current(robot)
         if lease is None or _same(lease.id, lease_id):
             return

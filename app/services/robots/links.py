@@ -6,7 +6,7 @@ import uuid
 from collections.abc import Callable
 from typing import Final
 
-from starlette.concurrency import run_in_threadpool
+from anyio import to_thread
 
 from app.services.robots.outbox import Outbox
 from hardware.link.messages import (
@@ -23,7 +23,7 @@ from solver import UnknownRobot
 ANSWER_S: Final = 3.0
 """How long a stop or an acknowledgement waits for the worker's answer."""
 
-# Close codes of the link; 44xx as the HTTP status 4xx that fits.
+# Close codes of the link, of those that are left to applications.
 NOT_A_MESSAGE: Final = 4400
 UNKNOWN_ROBOT: Final = 4404
 SILENT: Final = 4408
@@ -119,7 +119,7 @@ class LinkService:
             LinkRefused: there is none of that name.
         """
         try:
-            return await run_in_threadpool(load_instance, robot)
+            return await to_thread.run_sync(load_instance, robot)
         except UnknownRobot:
             raise LinkRefused(UNKNOWN_ROBOT, "There is no robot of this name.") from None
 

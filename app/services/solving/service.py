@@ -75,7 +75,7 @@ class SolvingService:
 
     @asynccontextmanager
     async def _place(self) -> AsyncIterator[None]:
-        """One of the places for batches; what ends the solver over it is told as a problem."""
+        """One of the places for batches; what ends the solver over it is told as Unavailable."""
         if self._solving >= self._workers + self._most_waiting:
             raise Unavailable(
                 "overloaded", "Too many plans are waiting.", retry_after_s=OVERLOAD_RETRY_S
@@ -125,8 +125,7 @@ class SolvingService:
 
         Raises:
             InvalidRequest: the request makes no sense.
-            Unavailable: the worker died over it, or too
-                many are waiting.
+            Unavailable: the worker died over it, or too many are waiting.
         """
         async with self._place():
             return await self.run(read_batch, body, limits, as_job, frames.get)

@@ -4,6 +4,7 @@ import math
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 from rich.console import Console
 
@@ -115,3 +116,22 @@ def test_proven_bounds_are_summed() -> None:
     plan = plan_request(json.dumps(request).encode())[0]
     bound = sum(approach["lower_bound"] for approach in plan["approaches"])
     assert f"at least {bound:.4f} " in printed(request)
+
+
+def test_table_speaks_degrees_and_keeps_failures(plan: dict[str, Any]) -> None:
+    lines = markdown_table(plan).splitlines()
+    assert len(lines) == 2 + 5
+    assert lines[0].count("|") == len(HEADINGS) + 1
+    assert "| 3 | infeasible |" in lines[4]
+    angle = np.degrees(plan["approaches"][0]["approach_angle_rad"])
+    assert f"| {angle:.2f} |" in lines[2]
+
+
+def test_ids_that_look_like_markup_are_printed_as_they_are() -> None:
+    request = demo_request()
+    request["targets"] = request["targets"][:1]
+    request["targets"][0]["id"] = "[/x][red]"
+    plan, _ = plan_request(json.dumps(request).encode())
+    console = Console(record=True, width=200, file=io.StringIO())
+    print_plan(plan, console)
+    assert console.export_text().count("[/x][red]") == 3

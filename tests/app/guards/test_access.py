@@ -3,7 +3,6 @@
 import asyncio
 from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -11,8 +10,8 @@ from sqlalchemy.exc import OperationalError
 from starlette.types import Message, Receive, Scope, Send
 
 from app.guards.access import REVOKED, AccessGuardMiddleware
+from app.guards.route_scopes import STOP
 from app.services.access import service as access_module
-from app.services.access.scopes import STOP
 from app.services.access.service import TRUSTED_S, AccessService
 from app.services.access.tokens import new_token
 from app.settings import Settings
@@ -36,7 +35,7 @@ class Door:
     def __init__(self, store: TokenStore, **options: Any) -> None:
         self.clock = Clock()
         self.store = store
-        self.state = SimpleNamespace(access=AccessService(store, monotonic=self.clock))
+        self.access = AccessService(store, monotonic=self.clock)
         self.clients: list[str] = []
         self.app: Callable[[Scope, Receive, Send], Awaitable[None]] = self.answer
         usual: dict[str, Any] = {
@@ -44,6 +43,7 @@ class Door:
         }  # fmt: skip
         self.guard = AccessGuardMiddleware(
             lambda scope, receive, send: self.app(scope, receive, send),
+            access=lambda: self.access,
             **usual | options,
             monotonic=self.clock,
         )
@@ -178,7 +178,7 @@ def test_without_the_store_a_stop_of_a_known_token_passes(store: TokenStore) -> 
     stranger, _ = issued(store, "plan")
     assert door.status("GET", ROBOTS, token) == 200
     door.clock.now_s += TRUSTED_S
-    door.state.access._store = BrokenStore.__new__(BrokenStore)
+    door.access._store = BrokenStore.__new__(BrokenStore)
     assert door.status("GET", ROBOTS, token) == 503
     assert door.header("retry-after", "GET", ROBOTS, token) == "1"
     assert door.status("POST", STOP_PATH, token) == 200
@@ -199,7 +199,7 @@ def test_a_stop_does_not_wait_for_a_store_that_hangs(
         async with asyncio.timeout(patience_s):
             await asyncio.Event().wait()
 
-    monkeypatch.setattr(door.state.access, "_row", hanging)
+    monkeypatch.setattr(door.access, "_row", hanging)
     assert door.status("POST", STOP_PATH, token) == 200
 
 
@@ -298,7 +298,7 @@ def test_a_store_that_is_away_does_not_close_a_websocket(store: TokenStore) -> N
     token, _ = issued(store, "execute")
 
     async def listening(scope: Scope, receive: Receive, send: Send) -> None:
-        door.state.access._store = BrokenStore.__new__(BrokenStore)
+        door.access._store = BrokenStore.__new__(BrokenStore)
         door.clock.now_s += TRUSTED_S
         message = await receive()
         await send({"type": "websocket.send", "text": message["text"]})

@@ -5,6 +5,9 @@ from pathlib import Path
 import pytest
 
 from app.reports.folder import OWN_FILES, check_folder, report_files, write_report
+from app.reports.html import comparison_to_html
+from app.reports.markdown import comparison_to_markdown
+from solver.comparison.result import Comparison
 from solver.comparison.run import run_contest
 from tests.solver.comparison.contests import small_contest
 
@@ -78,3 +81,13 @@ def test_a_folder_that_is_a_file_or_in_a_file_is_refused(tmp_path: Path) -> None
     with pytest.raises(IsADirectoryError):
         check_folder(tmp_path)
     assert names(tmp_path) == {"file", "report.csv"}
+
+
+def test_every_report_names_machine_versions_and_seeds(comparison: Comparison) -> None:
+    for text in (
+        comparison_to_html(comparison, []),
+        comparison_to_markdown(comparison, []).replace("\\", ""),
+    ):
+        for said in ("a desk", "Python", "numpy", "seeds", "made up", "height [m²]"):
+            assert said in text
+        assert comparison.machine["processor"].split()[0] in text

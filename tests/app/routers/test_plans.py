@@ -1,5 +1,4 @@
 import json
-import math
 import sqlite3
 import subprocess
 import sys
@@ -8,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
-from solver import Options, Problem, Target, feasible_arcs, load_robot, solve
+from app.services.plans.wire import plan_to_wire
+from solver import Options, Problem, Target, load_robot, solve
 from tests.app.conftest import EXAMPLE, REPOSITORY, Server, running_server
 
 Body = dict[str, Any]
@@ -93,30 +92,6 @@ def test_include_decides_what_is_sent(
         assert {name for name, field in fields.items() if field in approach} == set(include)
 
 
-def test_arcs_tell_where_each_branch_is_feasible(request_body: Body) -> None:
-    request_body["targets"].insert(2, OUT_OF_REACH)
-    request_body["options"] = {"include": ["arcs"]}
-    problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
-    plan = plan_to_wire(solve(problem), "0")
-    assert not has_null(plan)
-    of_problem = feasible_arcs(problem)
-    for approach in plan["approaches"]:
-        arcs = approach["arcs"]
-        assert [(arc["lower_rad"], arc["upper_rad"]) for arc in arcs] == [
-            (arc.lower_rad, arc.upper_rad) for arc in of_problem[approach["target_id"]]
-        ]
-        ends = {*problem.robot.joint_names, "reach", "wrist_jump"}
-        assert all({arc["lower_limit"], arc["upper_limit"]} <= ends for arc in arcs)
-        if approach["status"] == "infeasible":
-            assert arcs == []
-            continue
-        assert any(
-            (arc["tool_side"], arc["branch"]) == (approach["tool_side"], approach["branch"])
-            and arc["lower_rad"] <= approach["approach_angle_rad"] <= arc["upper_rad"]
-            for arc in arcs
-        )
-
-
 def test_plan_is_read_again(server: Server, request_body: Body) -> None:
     plan = post(server, request_body)
     path = f"/v1/plans/{plan['id']}"
@@ -159,68 +134,6 @@ def test_same_plan_over_http_command_line_and_python(server: Server, tmp_path: P
     assert by_command["summary"]["planned"] == 5
     assert comparable(by_command) == comparable(over_http)
     assert comparable(in_python) == comparable(over_http)
-
-
-def test_options_are_all_known_to_the_solver(request_body: Body) -> None:
-    given = {
-        "method": "ssas", "order": "independent", "norm": "l2", "weights": "uniform",
-        "joint_weights": [1, 2, 3, 4, 5, 6], "standoff_m": 0.03, "path_points": 11,
-        "straightness_m": 0.001, "dwell_s": 1, "limit_margin_rad": 0.01, "symmetric_tool": True,
-        "strike_zone_m": 0.01, "tilt_tolerance_rad": 0.1, "samples": 20, "seed": 3,
-        "certify": False, "nlp_backend": "ipopt", "qp_solver": "osqp", "include": ["path"],
-    }  # fmt: skip
-    request_body["options"] = given
-    problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
-    assert {name: getattr(problem.options, name) for name in given} == {
-        **given, "joint_weights": (1, 2, 3, 4, 5, 6), "include": ("path",),
-    }  # fmt: skip
-    assert set(given) == set(Options.__dataclass_fields__)
-
-
-def test_bounds_and_proofs_are_told(request_body: Body) -> None:
-    request_body["targets"].append(
-        {"id": "far", "position_m": [0.9, 0.0, 0.3], "branch_direction": [0, 1, 0]}
-    )
-    # In a batch a bound counts from where the approach before it has left the arm.
-    for certify, order in (
-        (True, "independent"),
-        (True, "given"),
-        (True, "optimal"),
-        (False, "given"),
-    ):
-        request_body["options"] = {"method": "ssas", "certify": certify, "order": order}
-        problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
-        *planned, far = plan_to_wire(solve(problem), "0")["approaches"]
-        assert [approach["status"] for approach in planned] == ["planned"] * 5
-        assert all(("lower_bound" in approach) is certify for approach in planned)
-        assert far["reason"].get("proven") is (True if certify else None)
-
-
-def test_robots(server: Server) -> None:
-    listed = server.client.get("/v1/robots").json()["robots"]
-    assert "tabletop" in {robot["name"] for robot in listed}
-    robot = server.client.get("/v1/robots/tabletop").json()
-    assert len(robot["joints"]) == len(robot["home_joints"]) == 6
-    assert all(joint["velocity_rad_s"] > 0 for joint in robot["joints"])
-    assert {tool["name"] for tool in robot["tools"]} == {"laser", "scaffold"}
-    assert all(tool["reach_m"] > 0 for tool in robot["tools"])
-    assert robot["model_version"]
-
-
-def test_a_rail_is_told_in_metres(server: Server) -> None:
-    robot = server.client.get("/v1/robots/puma560_rail").json()
-    rail, waist = robot["joints"][:2]
-    assert (rail["kind"], waist["kind"]) == ("prismatic", "revolute")
-    assert (rail["lower_m"], rail["upper_m"], rail["velocity_m_s"]) == (-0.6, 0.6, 0.5)
-    assert not [name for name in rail if name.endswith(("_rad_s", "_rad_s2")) or "er_rad" in name]
-    assert not [name for name in waist if name.startswith(("lower_m", "upper_m", "velocity_m"))]
-    assert waist["upper_rad"] == pytest.approx(math.radians(160))
-    assert robot["mount_rpy_rad"] == pytest.approx([-math.pi / 2, 0, 0])
-    assert len(robot["home_joints"]) == 7
-    assert "estimated" in robot["mass_source"]
-    listed = {entry["name"] for entry in server.client.get("/v1/robots").json()["robots"]}
-    assert {"puma560", "puma560_rail", "tabletop", "tabletop-sim"} <= listed
-    assert not {"puma560-sim", "puma560_rail-sim"} & listed
 
 
 def test_a_plan_on_a_rail(server: Server) -> None:

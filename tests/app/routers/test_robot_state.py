@@ -34,22 +34,6 @@ def answer_stop(fake: FakeWorker) -> None:
     fake.say(StopReport(stop.request_id, True, True, "it stands", JOINTS, AT))
 
 
-def test_robots_are_instances(server: Server) -> None:
-    listed = {entry["name"]: entry for entry in server.client.get("/v1/robots").json()["robots"]}
-    assert listed["tabletop"]["simulated"] is False
-    twin = listed["tabletop-sim"]
-    assert (twin["simulated"], twin["model"]) == (True, "tabletop")
-    assert twin["model_version"] == listed["tabletop"]["model_version"]
-    detail = server.client.get("/v1/robots/tabletop-sim").json()
-    assert (detail["simulated"], detail["model"], detail["name"]) == (
-        True, "tabletop", "tabletop-sim",
-    )  # fmt: skip
-    assert "calibration_rad" not in detail
-    with worker(server):
-        detail = server.client.get("/v1/robots/tabletop-sim").json()
-        assert detail["calibration_rad"] == [0.0, 0.01, 0.0, 0.0, 0.0, 0.0]
-
-
 def test_state_without_a_worker(server: Server) -> None:
     assert state(server, "tabletop") == {
         "robot": "tabletop", "connected": False, "status": "disconnected", "simulated": False,

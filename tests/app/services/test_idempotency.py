@@ -2,32 +2,23 @@
 
 import asyncio
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sqlalchemy import URL, Engine, func, select
+from sqlalchemy import URL, Engine
 
 from app.services.exceptions import ServiceError, Unavailable
 from app.services.idempotency import IdempotencyService
 from app.store import (
-    ComparisonStore,
-    ExecutionStore,
     IdempotencyStore,
     KeyedAnswer,
-    KeyTaken,
-    NewEntry,
     NewKey,
     PlanStore,
-    RobotBusy,
     new_entry,
     open_engine,
 )
-from app.store.tables import COMPARISONS, EXECUTIONS, IDEMPOTENCY_KEYS, PLANS
-
-NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
 
 
 @pytest.fixture(scope="module")
@@ -127,50 +118,3 @@ def test_at_once_nothing_is_created_twice(
                 assert fails or any(other != body for other in others)
 
     asyncio.run(run())
-
-
-def _entry() -> NewEntry:
-    entry = new_entry(NewKey("POST /", _fresh(), "digest"), 201, "/1", "{}")
-    assert entry is not None
-    return entry
-
-
-def _count(engine: Engine) -> list[int]:
-    tables = (PLANS, EXECUTIONS, COMPARISONS, IDEMPOTENCY_KEYS)
-    with engine.connect() as connection:
-        return [connection.scalar(select(func.count()).select_from(table)) or 0 for table in tables]
-
-
-def _add(engine: Engine, kind: str, robot: str, entry: NewEntry) -> None:
-    if kind == "plan":
-        PlanStore(engine).add(_fresh(), robot=robot, request="{}", answer="{}", key=entry)
-    elif kind == "comparison":
-        ComparisonStore(engine).add(_fresh(), scenario="s", document="{}", key=entry)
-    else:
-        ExecutionStore(engine).add(
-            _fresh(), plan_id=_fresh(), robot=robot, status="queued", created_at=NOW,
-            document="{}", key=entry,
-        )  # fmt: skip
-
-
-@pytest.mark.parametrize("kind", ["plan", "comparison", "execution"])
-def test_a_taken_key_stores_nothing_of_what_it_was_for(engine: Engine, kind: str) -> None:
-    entry = _entry()
-    _add(engine, kind, kind, entry)
-    before = _count(engine)
-    # Of a duplicate it is not said that the robot is busy, although it is, with the first.
-    with pytest.raises(KeyTaken):
-        _add(engine, kind, kind, entry)
-    assert _count(engine) == before
-
-
-def test_what_was_not_created_leaves_no_key(engine: Engine) -> None:
-    _add(engine, "execution", "busy", _entry())
-    before, entry = _count(engine), _entry()
-    with pytest.raises(RobotBusy):
-        _add(engine, "execution", "busy", entry)
-    assert _count(engine) == before
-    _add(engine, "execution", "idle", entry)
-    stored = IdempotencyStore(engine).find(entry.key.scope, entry.key.key)
-    assert stored is not None
-    assert (stored.digest, stored.answer) == (entry.key.digest, entry.answer)

@@ -1,14 +1,10 @@
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from alembic.autogenerate import compare_metadata
-from alembic.migration import MigrationContext
-from sqlalchemy import URL, Engine, create_engine, text
+from sqlalchemy import Engine
 
-from app.store import ExecutionStore, PlanStore, RobotBusy, open_engine
-from app.store.database import migrate
+from app.store import ExecutionStore, RobotBusy
 from app.store.executions import MOST_LISTED
-from app.store.tables import METADATA
 
 NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
 
@@ -24,28 +20,6 @@ def add(store: ExecutionStore, number: int, robot: str = "tabletop") -> str:
         created_at=NOON + timedelta(seconds=number), document=f'{{"number":{number}}}',
     )  # fmt: skip
     return execution_id
-
-
-def test_migrations_lead_to_the_tables(engine: Engine) -> None:
-    with engine.connect() as connection:
-        assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
-
-
-def test_a_database_of_the_first_version_keeps_its_plans(store_url: URL) -> None:
-    engine = create_engine(store_url)
-    with engine.begin() as connection:
-        migrate(connection, "0001")
-        connection.execute(
-            text("INSERT INTO plans VALUES (:id, :at, 'tabletop', '{}', '[]')"),
-            {"id": identifier(1), "at": "2026-01-01 00:00:00"},
-        )
-    engine.dispose()
-    engine = open_engine(store_url)
-    plan = PlanStore(engine).plan(identifier(1))
-    assert plan is not None
-    assert (plan.request, plan.answer) == ("{}", "[]")
-    assert add(ExecutionStore(engine), 1)
-    engine.dispose()
 
 
 def test_a_robot_has_one_active_execution(engine: Engine) -> None:

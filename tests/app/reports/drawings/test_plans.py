@@ -1,4 +1,4 @@
-"""Pictures and tables of plans, drawn from the JSON answer."""
+"""Pictures of plans, drawn from the JSON answer."""
 
 import io
 from typing import Any
@@ -6,17 +6,14 @@ from typing import Any
 import numpy as np
 import orjson
 import pytest
-from matplotlib.patches import Rectangle
 from rich.console import Console
 
-from app.commands.plan_table import HEADINGS, markdown_table, print_plan
+from app.commands.plan_table import print_plan
 from app.reports.drawings.arm import draw_arm
 from app.reports.drawings.effort import CHOSEN_COLOUR, draw_effort
-from app.reports.drawings.weights import draw_weights, robots_with_masses
 from app.schemas.demo_request import demo_request
 from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
 from solver import Problem, solve
-from solver.kinematics.torque_weights import torque_weights
 
 
 def planned(request: dict[str, Any]) -> tuple[dict[str, Any], Problem]:
@@ -73,37 +70,3 @@ def test_a_plan_without_planned_targets_can_be_drawn_and_printed() -> None:
     console = Console(record=True, width=200, file=io.StringIO())
     print_plan(plan, console)
     assert "far: out_of_reach" in console.export_text()
-
-
-def test_table_speaks_degrees_and_keeps_failures(mixed: tuple[dict[str, Any], Problem]) -> None:
-    plan, _ = mixed
-    lines = markdown_table(plan).splitlines()
-    assert len(lines) == 2 + 6
-    assert lines[0].count("|") == len(HEADINGS) + 1
-    assert "| far | infeasible |" in lines[3]
-    angle = np.degrees(plan["approaches"][0]["approach_angle_rad"])
-    assert f"| {angle:.2f} |" in lines[2]
-
-
-def test_ids_that_look_like_markup_are_printed_as_they_are() -> None:
-    request = demo_request()
-    request["targets"] = request["targets"][:1]
-    request["targets"][0]["id"] = "[/x][red]"
-    plan, _ = planned(request)
-    console = Console(record=True, width=200, file=io.StringIO())
-    print_plan(plan, console)
-    assert console.export_text().count("[/x][red]") == 3
-
-
-def test_weights_are_drawn_as_they_are() -> None:
-    robots = robots_with_masses()
-    assert {"puma560", "puma560_rail", "tabletop"} <= {robot.name for robot in robots}
-    figure = draw_weights(robots)
-    figure.canvas.draw()
-    for robot, axes in zip(robots, figure.axes[1::2], strict=True):
-        tool = robot.tool(robot.default_tool)
-        assert tool is not None
-        heights = [bar.get_height() for bar in axes.patches if isinstance(bar, Rectangle)]
-        assert heights == pytest.approx(torque_weights(robot, tool))
-        assert robot.mass_source in axes.get_title()
-        assert [label.get_text() for label in axes.get_xticklabels()] == list(robot.joint_names)

@@ -11,7 +11,6 @@ import httpx2
 import orjson
 import pytest
 
-from app.guards.body_limit import SMALL_BODY_BYTES
 from app.services.plans.batch_reading import LARGE_BODY_BYTES
 from tests.app.conftest import BODY_LIMIT_BYTES, Server, assert_problem
 
@@ -137,13 +136,6 @@ def test_a_million_blossoms(server: Server) -> None:
         body["branches"][0]["points_m"] = [[0.0, 0.0, 0.0]]
         broken = server.client.post(path, content=orjson.dumps(body), headers=headers)
         assert_problem(broken, 422, "#/branches/0/points_m")
-
-
-@pytest.mark.parametrize("path", ["/v1/executions", "/v1/comparisons", "/v1/robots/tabletop/lease"])
-def test_no_other_route_takes_a_large_body(path: str, server: Server) -> None:
-    content = b" " * (SMALL_BODY_BYTES + 1)
-    headers = {"Content-Type": "application/json"}
-    assert_problem(server.client.post(path, content=content, headers=headers), 413)
 
 
 def test_a_large_body_for_few_targets_is_answered_at_once(server: Server) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from tests.app.conftest import BODY_LIMIT_BYTES, Server, assert_problem
+from tests.app.conftest import Server, assert_problem
 
 MARKER = "qq7z"
 Body = dict[str, Any]
@@ -247,26 +247,6 @@ def test_many_spoiled_targets_cost_little(server: Server, request_body: Body) ->
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "media_type", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data"]
-)
-def test_wrong_media_type(media_type: str, server: Server, request_body: Body) -> None:
-    assert_problem(post(server, json.dumps(request_body).encode(), media_type), 415)
-
-
-def test_body_over_the_limit(server: Server) -> None:
-    assert_problem(post(server, b" " * (BODY_LIMIT_BYTES + 1)), 413)
-
-
-@pytest.mark.parametrize("sizes", [[400_000] * 40, [4_000_000, 4_000_001], [8_000_001]])
-def test_streamed_body_over_the_limit(sizes: list[int], server: Server) -> None:
-    chunks = (b" " * size for size in sizes)
-    answer = server.client.post(
-        "/v1/plans", content=chunks, headers={"Content-Type": "application/json"}
-    )
-    assert_problem(answer, 413)
-
-
 def test_batch_over_the_limit_of_an_answer_at_once(server: Server) -> None:
     targets = [
         {"id": f"{k}", "position_m": [9, 0, 0], "branch_direction": [0, 0, 1]} for k in range(2001)
@@ -278,27 +258,5 @@ def test_batch_over_the_limit_of_an_answer_at_once(server: Server) -> None:
     assert canceled.status_code in (202, 409)
 
 
-@pytest.mark.parametrize(
-    "path", ["/v1/plans/1", f"/v1/plans/{'0' * 32}", "/v1/plans/%00", "/v1/robots/qq7z", "/qq7z"]
-)
-def test_unknown_path(path: str, server: Server) -> None:
-    answer = server.client.get(path)
-    assert_problem(answer, 404)
-    assert MARKER not in answer.text
-
-
-def test_wrong_http_method(server: Server) -> None:
-    assert_problem(server.client.delete("/v1/plans"), 405)
-
-
 def test_service_survived_it_all(server: Server) -> None:
     assert server.client.get("/readyz").status_code == 200
-
-
-def test_a_slash_too_many_is_no_redirection(server: Server) -> None:
-    assert_problem(server.client.post("/v1/plans/", json={}), 404)
-
-
-def test_a_compressed_body_is_told_of(server: Server) -> None:
-    headers = {"Content-Type": "application/json", "Content-Encoding": "gzip"}
-    assert_problem(server.client.post("/v1/plans", content=b"{}", headers=headers), 415)

@@ -5,14 +5,11 @@ from fastapi import APIRouter
 from starlette.routing import Mount
 from starlette.staticfiles import StaticFiles
 
-from app.server.application import create_app
-from app.services.access.scopes import (
-    ADMIN,
+from app.guards.route_scopes import (
     ANY,
     LEASED,
     OPEN,
     ROUTES,
-    SCOPES,
     STOP,
     UNLIMITED,
     WEBSOCKET,
@@ -20,7 +17,9 @@ from app.services.access.scopes import (
     check_rows,
     row_of,
     served_rows,
-)  # fmt: skip
+)
+from app.server.application import create_app
+from app.services.access.scopes import ADMIN, SCOPES
 from app.settings import Settings
 
 APP = create_app(Settings())

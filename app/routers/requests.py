@@ -1,4 +1,4 @@
-"""What several routes share: how bodies are read and errors described."""
+"""What routes read of requests: bodies, and headers that several take."""
 
 from typing import Any
 
@@ -6,32 +6,9 @@ from fastapi import Request
 
 from app.errors import ProblemError
 from app.schemas.examples import EXAMPLES
-from app.schemas.problem_details import MEDIA_TYPE, ProblemDetails
 from app.services.robots.leases import LEASE_HEADER
 
-# Python's own phrases for these change from version to version.
-DESCRIPTIONS = {
-    401: "No token, or none that is valid",
-    403: "Not allowed for this token, from a page of another origin, or under another host name",
-    404: "Unknown",
-    408: "The body did not come in time",
-    409: "Not in this state",
-    413: "Body over the size limit",
-    415: "Body not JSON by its media type",
-    422: "Request that makes no sense",
-    429: "Too many requests",
-    500: "Fault of the service",
-    503: "Not available now",
-    507: "The storage is full",
-}
-
-
-def problem_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI descriptions of these errors."""
-    content = {MEDIA_TYPE: {"schema": {"$ref": f"#/components/schemas/{ProblemDetails.__name__}"}}}
-    return {
-        status: {"content": content, "description": DESCRIPTIONS[status]} for status in statuses
-    }
+NDJSON = "application/x-ndjson"
 
 
 def body_of(model: type) -> dict[str, Any]:
@@ -39,9 +16,6 @@ def body_of(model: type) -> dict[str, Any]:
     name = model.__name__
     content = {"schema": {"$ref": f"#/components/schemas/{name}"}, "example": EXAMPLES[name]}
     return {"requestBody": {"required": True, "content": {"application/json": content}}}
-
-
-NDJSON = "application/x-ndjson"
 
 
 def wants_lines(request: Request) -> bool:

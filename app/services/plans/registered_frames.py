@@ -10,9 +10,9 @@ import orjson
 from pydantic import MISSING
 
 from app.schemas.frames import FrameRegistrationRequest, FrameRequest, PointPairBody
+from app.schemas.present import present
 from app.services.exceptions import Conflict, InvalidRequest, NotFound, invalid_request
 from app.services.plans.sent_frames import BASE_FRAME
-from app.services.plans.wire import present
 from app.store import FramesFull, FrameStore, NewKey, StoredFrame
 from hardware.clock import instant_text
 from hardware.servos.instances import instance_names, load_instance
@@ -54,7 +54,7 @@ class FrameService:
 
         Raises:
             InvalidProblem: a pose or pairs that make no sense.
-            InvalidRequest: the name is none.
+            InvalidRequest: the name is none, or there is not just one rotation.
             Conflict: there are too many frames.
         """
         _check_name(name)
@@ -71,9 +71,9 @@ class FrameService:
         """Estimate a pose from pairs of points and register it, in place of what had the name.
 
         Raises:
-            InvalidProblem: pairs from which no pose follows; no robot of that name.
+            InvalidProblem: pairs from which no pose follows.
             KeyTaken: something was created under the key before.
-            InvalidRequest: the name is none.
+            InvalidRequest: the name is none, or the robot's.
             Conflict: there are too many frames.
         """
         _check_name(name)
