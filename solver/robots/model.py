@@ -178,6 +178,14 @@ class Robot:
         links = sum(math.hypot(joint.a_m, _longest(joint)) for joint in self.joints)
         return math.hypot(*self.mount_position_m) + links + abs(tool.length_m)
 
+    def limits_within(self, margin_rad: float) -> tuple[Array, Array]:
+        """Lower and upper limits, those of revolute joints drawn in by a margin, shape (n,) each.
+
+        Prismatic joints keep theirs: an angle says nothing about metres.
+        """
+        inset = margin_rad * self.turning
+        return np.asarray(self.lower + inset), np.asarray(self.upper - inset)
+
     def limit_margin(self, rows: Array) -> Array:
         """Smallest distance of a revolute joint to its limit, rows (..., n) to shape (...) [rad].
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from solver.approach.task.packed import LOWER, UPPER, jump_cosines
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch
@@ -26,7 +27,7 @@ def gather(problem: Problem, numbers: Array, arcs: Sequence[Sequence[Arc]]) -> B
         for arc in own
     ]
     table = np.array(rows, dtype=np.float64).reshape(-1, 4)
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    retreats = even_retreats(options)
     weights, squared = np.asarray(problem.joint_weights), options.norm == "l2"
     scale = np.sqrt(weights) if squared else weights
     limits = numbers[0, 0]

@@ -39,6 +39,16 @@ def test_limits_cannot_be_written_to(tabletop: Robot) -> None:
         tabletop.lower[0] = 0.0
 
 
+def test_a_margin_draws_in_what_turns_and_leaves_what_slides(tabletop: Robot) -> None:
+    lower, upper = tabletop.limits_within(0.1)
+    np.testing.assert_array_equal(lower, tabletop.lower + 0.1)
+    np.testing.assert_array_equal(upper, tabletop.upper - 0.1)
+    rail = load_robot("puma560_rail")
+    lower, upper = rail.limits_within(0.1)
+    assert (lower[0], upper[0]) == (rail.lower[0], rail.upper[0])
+    np.testing.assert_array_equal(lower[1:], rail.lower[1:] + 0.1)
+
+
 def test_unknown_robot_names_the_known_ones() -> None:
     with pytest.raises(UnknownRobot, match="tabletop") as raised:
         load_robot("../tabletop")
