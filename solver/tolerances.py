@@ -62,9 +62,6 @@ NLP_ITERATIONS: Final = 200
 """IPOPT's iteration limit; warm-started problems take about 15. A budget counts iterations, never
 seconds, so that the same request has the same answer."""
 
-NLP_BOUND_PUSH: Final = 1e-5
-"""How far IPOPT moves its start inside the bounds, absolute and relative, for the same reason."""
-
 EXACT_ZERO: Final = 1e-15
 """A cosine or sine of a link twist below this is zero: a right angle's cosine comes as 6e-17 and
 would keep dead terms in every expression."""

@@ -9,6 +9,10 @@ three orders."""
 NLP_BARRIER: Final = 1e-4
 """IPOPT's first barrier parameter. It starts at an optimum, so far below the default of 0.1."""
 
+NLP_BOUND_PUSH: Final = 1e-5
+"""How far IPOPT moves its start inside the bounds, absolute [rad or m] and relative: a warm start
+near limits is not to be moved away from its optimum."""
+
 NLP_LIMIT_INSET: Final = 1e-8
 """How far a relaxed programme stays inside the joint limits [rad], more than its own tolerance, so
 that the closed form's posture next to its answer is inside them too."""
