@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 from solver.sequencing.min_plus import relax
 from solver.sequencing.tolerances import (
     ANNEAL_COLD,
@@ -29,8 +30,7 @@ def stage_effort(nodes, before, node):
     total = 0.0
     for i in range(6):
         other = nodes.start[i, 0] if before < 0 else nodes.standby_rows[before, i]
-        change = abs(nodes.thinning_rows[node, i] - other)
-        total += change * change if nodes.squared else change
+        total += joint_cost(nodes.thinning_rows[node, i] - other, nodes.squared)
     return total
 
 

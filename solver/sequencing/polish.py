@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 from solver.sequencing.batch import arc_postures
 from solver.sequencing.tolerances import (
     CHAIN_GAIN_RELATIVE,
@@ -93,8 +94,8 @@ def _stage_efforts(batch, arcs, angles, stages):
     for k in range(n):
         stages[k] = 0.0
         for i in range(6):
-            change = abs(thinning[i, k] - (standby[i, k - 1] if k > 0 else batch.start[i]))
-            stages[k] += change * change if batch.squared else change
+            before = standby[i, k - 1] if k > 0 else batch.start[i]
+            stages[k] += joint_cost(thinning[i, k] - before, batch.squared)
 
 
 @kernel

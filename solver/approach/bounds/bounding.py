@@ -20,6 +20,7 @@ from solver.approach.bounds.intervals import (
 from solver.approach.bounds.tolerances import CERTIFICATE_PIECES
 from solver.approach.task.feasibility import effort, limit_margin, posture, tool_axes, trace
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, REACH_ROUNDING_M
 
 _TURN = 2 * math.pi
@@ -102,7 +103,7 @@ def least_effort_in_cell(task, half, turns, q, slopes, middle):
     for i in range(6):
         weight = task.weights[i]
         turn, least, certain = nearest_turn(task, i, q[i, 0], q[i, 1], turns[i, 0], turns[i, 1])
-        cost = weight * (least * least if task.squared else least)
+        cost = weight * joint_cost(least, task.squared)
         least_cost = outward(cost, cost, _SUM_STEPS)[0]
         plain += least_cost
         if q[i, 1] - q[i, 0] >= math.pi or middle[i, 1] - middle[i, 0] >= math.pi or not certain:

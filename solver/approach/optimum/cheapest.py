@@ -21,6 +21,7 @@ from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geom
 from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
 from solver.compiled import inlined, kernel
 from solver.kinematics.arctangent import atan2
+from solver.problem.effort import joint_cost
 from solver.robots.model import Array
 
 
@@ -146,6 +147,5 @@ def effort_at_least(task, turns, reference, wrist, k):
         sin = wrist_sign(wrist, i, False) * reference[i, 1]
         nearest = max(c[k + 1] * cos + s[k + 1] * sin, c[k + 2] * cos + s[k + 2] * sin)
         least = max(angle_of_cosine(nearest) - slack * beside, 0.0)
-        weight = task.numbers[WEIGHTS + i]
-        total += weight * (least * least if task.numbers[SQUARED] > 0.0 else least)
+        total += task.numbers[WEIGHTS + i] * joint_cost(least, task.numbers[SQUARED] > 0.0)
     return total

@@ -29,6 +29,7 @@ from solver.approach.optimum.tolerances import (
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, PackedTask
 from solver.approach.tolerances import ANGLE_STEP_RAD, LEAST_EFFORT_CELLS
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 
 _SLOPE_SHARE = 1e-5
 _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
@@ -52,9 +53,7 @@ def least_in_cell(task, joints, k, count):
         if k + 2 < count:
             beside = max(beside, abs(joints[i, k + 2] - joints[i, k + 1]))
         least = 0.0 if (a < 0.0) != (b < 0.0) else max(min(abs(a), abs(b)) - beside / 2, 0.0)
-        total += task.numbers[WEIGHTS + i] * (
-            least * least if task.numbers[SQUARED] > 0.0 else least
-        )
+        total += task.numbers[WEIGHTS + i] * joint_cost(least, task.numbers[SQUARED] > 0.0)
     return total
 
 

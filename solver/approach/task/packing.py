@@ -37,7 +37,7 @@ def packed_targets(
                 (placed, side * branch @ turn, outward @ turn, sideways @ turn),
                 references,
                 np.asarray(problem.joint_weights),
-                options.norm == "l2",
+                options.squared,
             )
             for side in sides
         ]

@@ -74,7 +74,7 @@ class ApproachTask:
             retreats=np.asarray(self.retreats_m),
             reference=np.asarray(self.reference),
             weights=np.asarray(self.joint_weights),
-            squared=self.options.norm == "l2",
+            squared=self.options.squared,
         )
 
     def _vectors(self, tool_side: int) -> tuple[Array, Array, Array, Array]:
@@ -101,7 +101,7 @@ class ApproachTask:
             (position[None], y_axis[None], outward[None], sideways[None]),
             np.asarray(self.reference),
             np.asarray(self.joint_weights),
-            self.options.norm == "l2",
+            self.options.squared,
         )
         return PackedTask(numbers[0], np.asarray(self.retreats_m), jump_cosines(self.retreats_m))
 
