@@ -11,7 +11,6 @@ from solver.approach.arcs.cells import ARC_NODES
 from solver.approach.arcs.tolerances import ARC_END_RAD, EXTREME_ANGLE_RAD
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
-    JUMP,
     ROW_CONSTRAINTS,
     TURN_ROWS,
     jump_margin,
@@ -21,6 +20,7 @@ from solver.approach.arcs.turns import (
     turns_along_path,
     write_turns,
 )
+from solver.approach.task.constraints import JUMP
 from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import kernel
 from solver.robots.model import Array

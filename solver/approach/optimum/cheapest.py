@@ -14,9 +14,10 @@ import numpy as np
 from solver.approach.arcs.cells import enters_reach
 from solver.approach.arcs.roots import ARMS, ArcScratch, arc_scratch
 from solver.approach.arcs.search import ARC_COLUMNS, MOST_ARCS, cell_pieces, open_up
-from solver.approach.arcs.turns import BESIDE, REACH, wrist_sign
+from solver.approach.arcs.turns import wrist_sign
 from solver.approach.optimum.effort_samples import EffortScratch, effort_scratch
 from solver.approach.optimum.search import least_effort
+from solver.approach.task.constraints import BESIDE, REACH
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
 from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
 from solver.compiled import inlined, kernel

@@ -34,6 +34,7 @@ from solver.approach.refusal.tolerances import (
     NEAREST_STEPS,
     NEAREST_TRIAL_STEPS,
 )
+from solver.approach.task.constraints import LIMITS, REACH
 from solver.approach.task.feasibility import CutInTask, limit_margin, posture, tool_axes, trace
 from solver.approach.uncertainty.displacement import rows_displacement_margin
 from solver.approach.uncertainty.sensitivity import joint_rates
@@ -41,8 +42,6 @@ from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
 from solver.robots.model import Array
 from solver.tolerances import JOINT_RATE_RAD_M
-
-_KINDS = 13  # constraints of a row: both limits of six joints, and the reach
 
 
 class Watched(NamedTuple):
@@ -141,9 +140,9 @@ def row_constraints(task, turn, retreat, branch, spread, scratch, values, gradie
         for k in range(4):
             gradients[2 * i, k] = flat * rates[i, k]
             gradients[2 * i + 1, k] = -flat * rates[i, k]
-    values[12] = reach - NEAREST_INSIDE_M - spread
+    values[2 * REACH] = reach - NEAREST_INSIDE_M - spread
     for k in range(4):
-        gradients[12, k] = reach_rates[k]
+        gradients[2 * REACH, k] = reach_rates[k]
 
 
 @kernel
@@ -199,12 +198,12 @@ def constraints(task, origin, x, turn, branch, watched, scratch, values, gradien
             branch,
             watched.spread,
             scratch,
-            values[_KINDS * w : _KINDS * (w + 1)],
-            gradients[_KINDS * w : _KINDS * (w + 1)],
+            values[LIMITS * w : LIMITS * (w + 1)],
+            gradients[LIMITS * w : LIMITS * (w + 1)],
         )
     for w in range(watched.jumps_count):
         row, joint = watched.jumps[w]
-        j = _KINDS * count + w
+        j = LIMITS * count + w
         values[j] = jump_constraint(task, turn, row, joint, branch, scratch, gradients[j])
 
 
@@ -234,7 +233,7 @@ def minimise(task, origin, x, turn, branch, watched, best, scratch):
 
     Infinite where it was left because it leads to a displacement longer than `best` [m].
     """
-    rows = _KINDS * watched.rows_count + watched.jumps_count
+    rows = LIMITS * watched.rows_count + watched.jumps_count
     values, gradients = np.empty(rows), np.empty((rows, 4))
     new_values, new_gradients = np.empty(rows), np.empty((rows, 4))
     towards, curvature = np.empty((rows, 4)), np.empty(rows)
@@ -344,7 +343,7 @@ def estimates(task, angles, spread, found, starts):
     """
     origin, moved = task.position, copy_at(task, task.position.copy())
     turn, scratch = np.cross(task.outward, task.sideways), scratch_arrays()
-    values, gradients = np.empty(2 * _KINDS), np.empty((2 * _KINDS, 4))
+    values, gradients = np.empty(2 * LIMITS), np.empty((2 * LIMITS, 4))
     ends = Watched(
         np.array([len(task.retreats) - 1, 0]), 2, np.empty((0, 2), dtype=np.int64), 0, spread
     )
@@ -365,7 +364,7 @@ def estimates(task, angles, spread, found, starts):
                     continue
             constraints(moved, origin, x, turn, branch, ends, scratch, values, gradients)
             worst = 0.0
-            for j in range(2 * _KINDS):
+            for j in range(2 * LIMITS):
                 if values[j] < 0:
                     slope = math.sqrt(
                         gradients[j, 0] ** 2 + gradients[j, 1] ** 2 + gradients[j, 2] ** 2

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from solver.approach.task.constraints import JOINTS, LIMITS, REACH
 from solver.approach.task.feasibility import tool_axes, trace
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
 from solver.approach.uncertainty.tolerances import (
@@ -23,6 +24,9 @@ from solver.approach.uncertainty.tolerances import (
 )
 from solver.compiled import kernel
 
+_LOWER_5, _UPPER_5 = 2 * 4, 2 * 4 + 1
+"""The limits of joint 5, in whose place a straight wrist may stand."""
+
 
 @kernel
 def limit_distance(g, position, axes, branch, q, kind, limit, delta):
@@ -34,7 +38,7 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
         axes: its orientation, shape (3, 3).
         branch: inverse kinematics branch.
         q: the posture there, shape (6,) [rad].
-        kind: index of the joint; 6 for the reach margin.
+        kind: index of the joint; REACH for the reach margin.
         limit: the joint's limit [rad]; 0 for the reach.
         delta: where the search starts, a shift inside the reach; written, the shift found, shape
             (3,) [m].
@@ -44,8 +48,8 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
     shifted(g, position, delta, axes, branch, q, at)
     for _ in range(DISPLACEMENT_ROUNDS):
         reach = joint_rates(g, at, axes, 0.0, turn, rates, reach_rates)
-        gradient = reach_rates if kind == 6 else rates[kind]
-        missing = limit - (reach if kind == 6 else at[kind])
+        gradient = reach_rates if kind == REACH else rates[kind]
+        missing = limit - (reach if kind == REACH else at[kind])
         square = 0.0
         for i in range(3):
             square += gradient[i] * gradient[i]
@@ -107,10 +111,9 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
 
 @kernel
 def first_order(g, lower, upper, q, axes, rates, reach_rates, distances):
-    """Fills the distances at which each limit is met to first order, shape (13,) [m].
+    """Fills the distances at which each limit is met to first order, shape (LIMITS,) [m].
 
-    Entry 2 i is joint i's lower limit, 2 i + 1 its upper one, 12 the reach; `lower` and `upper` are
-    those of `branch_limits`. Negative where a limit is broken.
+    `lower` and `upper` are those of `branch_limits`. Negative where a limit is broken.
     """
     reach = joint_rates(g, q, axes, 0.0, axes[:, 1], rates, reach_rates)
     for i in range(6):
@@ -118,7 +121,7 @@ def first_order(g, lower, upper, q, axes, rates, reach_rates, distances):
         distances[2 * i] = (q[i] - lower[i]) / max(slope, 1e-300)
         distances[2 * i + 1] = (upper[i] - q[i]) / max(slope, 1e-300)
     slope = math.sqrt(reach_rates[0] ** 2 + reach_rates[1] ** 2 + reach_rates[2] ** 2)
-    distances[12] = reach / max(slope, 1e-300)
+    distances[2 * REACH] = reach / max(slope, 1e-300)
 
 
 @kernel
@@ -148,23 +151,25 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
 
     Returns:
         The length of the smallest displacement [m], 0 where a limit is met or broken already; the
-        row; and the joint that is met there, 6 for the reach.
+        row; and the joint that is met there, REACH for the reach.
     """
     axes = np.ascontiguousarray(pose[:3, :3])
     low, high = np.empty(6), np.empty(6)
-    rates, reach_rates, distances = np.empty((6, 4)), np.empty(4), np.empty(13)
-    nearest, nearest_row = np.full(13, np.inf), np.zeros(13, dtype=np.int64)
+    rates, reach_rates, distances = np.empty((6, 4)), np.empty(4), np.empty(LIMITS)
+    nearest, nearest_row = np.full(LIMITS, np.inf), np.zeros(LIMITS, dtype=np.int64)
     for n in range(len(retreats)):
         branch_limits(g, lower, upper, rows[n], low, high)
         first_order(g, low, high, rows[n], axes, rates, reach_rates, distances)
-        for kind in range(13):
+        for kind in range(LIMITS):
             if distances[kind] < nearest[kind]:
                 nearest[kind], nearest_row[kind] = distances[kind], n
-    straight = min(nearest[8], nearest[9])
-    straight_row = nearest_row[8] if nearest[8] < nearest[9] else nearest_row[9]
+    straight = min(nearest[_LOWER_5], nearest[_UPPER_5])
+    straight_row = (
+        nearest_row[_LOWER_5] if nearest[_LOWER_5] < nearest[_UPPER_5] else nearest_row[_UPPER_5]
+    )
     position, delta, best_delta = np.empty(3), np.empty(3), np.zeros(3)
     best, best_row, best_joint = math.inf, 0, 0
-    for _ in range(13):
+    for _ in range(LIMITS):
         kind = int(np.argmin(nearest))
         if nearest[kind] > SCREENED_DISTANCES * best:
             break
@@ -175,10 +180,10 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
         behind(pose, retreats[n], position)
         branch_limits(g, lower, upper, rows[n], low, high)
         limit = 0.0
-        if kind < 12:
+        if kind < 2 * JOINTS:
             limit = high[kind // 2] if kind % 2 else low[kind // 2]
         delta[:] = 0.0
-        if (kind == 8 and low[4] > lower[4]) or (kind == 9 and high[4] < upper[4]):
+        if (kind == _LOWER_5 and low[4] > lower[4]) or (kind == _UPPER_5 and high[4] < upper[4]):
             length = straight_wrist_distance(g, position, axes, branch, rows[n], delta)
         else:
             length = limit_distance(g, position, axes, branch, rows[n], kind // 2, limit, delta)
@@ -233,8 +238,8 @@ def other_rows(
         for n in range(len(retreats)):
             behind(pose, retreats[n], position)
             reach = shifted(g, position, best_delta, axes, branch, rows[n], at)
-            if reach < worst and not (n == best_row and best_joint == 6):
-                worst, row, joint = reach, n, 6
+            if reach < worst and not (n == best_row and best_joint == REACH):
+                worst, row, joint = reach, n, REACH
             for i in range(6):
                 inside = min(at[i] - lower[i], upper[i] - at[i])
                 if inside < worst and not (n == best_row and best_joint == i):
@@ -244,7 +249,7 @@ def other_rows(
         behind(pose, retreats[row], position)
         reach = shifted(g, position, best_delta, axes, branch, rows[row], at)
         limit = 0.0
-        if joint < 6:
+        if joint < JOINTS:
             limit = lower[joint] if at[joint] < lower[joint] else upper[joint]
         delta[:] = 0.0
         length = limit_distance(g, position, axes, branch, rows[row], joint, limit, delta)
