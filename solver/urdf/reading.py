@@ -20,7 +20,7 @@ from solver.robots.model import PRISMATIC, REVOLUTE, Array, Joint, Link, Robot, 
 from solver.robots.rigid import inverse, roll_pitch_yaw, transform
 from solver.robots.toml_writing import with_version
 from solver.urdf.axes import Row, Rows, denavit_hartenberg
-from solver.urdf.tolerances import CONVERTED_POSE, CONVERTED_POSTURES, URDF_DIGITS
+from solver.urdf.tolerances import CONVERTED_POSE, CONVERTED_POSTURES, URDF_DIGIT_SHARE, URDF_DIGITS
 
 MOVING: Final = {"revolute": REVOLUTE, "continuous": REVOLUTE, "prismatic": PRISMATIC}
 
@@ -324,7 +324,9 @@ def _angle(text: str, where: str) -> float:
     multiple = round(value / (math.pi / 12)) * math.pi / 12
     digits = len(text.lower().partition("e")[0].partition(".")[2])
     plain = "e" not in text.lower() and digits >= URDF_DIGITS
-    return multiple if plain and abs(value - multiple) <= 0.51 * 10.0**-digits else value
+    return (
+        multiple if plain and abs(value - multiple) <= URDF_DIGIT_SHARE * 10.0**-digits else value
+    )
 
 
 def _number(text: str, where: str) -> float:

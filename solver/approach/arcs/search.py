@@ -23,7 +23,7 @@ from solver.approach.arcs.cells import (
     path_state,
 )
 from solver.approach.arcs.roots import ARMS, extreme_margin, tighten
-from solver.approach.arcs.tolerances import EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
+from solver.approach.arcs.tolerances import CELL_STACK, EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
     path_margins,
@@ -176,7 +176,7 @@ def push(stack, top, low, high, by_low, by_high):
 @kernel
 def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count):
     """Appends the feasible pieces of a cell that has to be split; returns the new count."""
-    stack = np.empty((64, 4))
+    stack = np.empty((CELL_STACK, 4))
     push(stack, 0, low, high, by_low, by_high)
     top = 1
     paths, margins = scratch.cell_paths, scratch.cell_margins

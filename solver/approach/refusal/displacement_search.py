@@ -18,6 +18,9 @@ from solver.approach.refusal.penalty_programme import penalty_programme, reset, 
 from solver.approach.refusal.tolerances import (
     NEAREST_ANGLE_SCALE_M,
     NEAREST_CONVERGED_M,
+    NEAREST_CUT,
+    NEAREST_CUTS,
+    NEAREST_FLAT_REACH,
     NEAREST_FLATTEST,
     NEAREST_HOPELESS,
     NEAREST_INSIDE_M,
@@ -25,7 +28,9 @@ from solver.approach.refusal.tolerances import (
     NEAREST_JUMP_SHARE,
     NEAREST_LARGEST_TURN_RAD,
     NEAREST_PENALTY,
+    NEAREST_PENALTY_LEAST_M,
     NEAREST_PRUNED,
+    NEAREST_REACH_STEPS,
     NEAREST_RESTORATIONS,
     NEAREST_ROUNDS,
     NEAREST_START_INSIDE_M,
@@ -33,6 +38,7 @@ from solver.approach.refusal.tolerances import (
     NEAREST_STEEPEST,
     NEAREST_STEPS,
     NEAREST_TRIAL_STEPS,
+    NEAREST_WIDENING,
 )
 from solver.approach.task.constraints import LIMITS, REACH
 from solver.approach.task.feasibility import CutInTask, limit_margin, posture, tool_axes, trace
@@ -41,7 +47,7 @@ from solver.approach.uncertainty.sensitivity import joint_rates
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
 from solver.robots.model import Array
-from solver.tolerances import JOINT_RATE_RAD_M
+from solver.tolerances import JOINT_RATE_RAD_M, LEAST_DIVISOR
 
 
 class Watched(NamedTuple):
@@ -129,7 +135,7 @@ def row_constraints(task, turn, retreat, branch, spread, scratch, values, gradie
     for i in range(6):
         q[i] = near[i] + wrap(q[i] - near[i])
         slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
-        flat = scale * min(1.0, steepest / max(slope * scale, 1e-300))
+        flat = scale * min(1.0, steepest / max(slope * scale, LEAST_DIVISOR))
         low, high = task.lower[i], task.upper[i]
         if i == 4 and spread > 0:
             offset = task.geometry.offsets[4]
@@ -243,7 +249,9 @@ def minimise(task, origin, x, turn, branch, watched, best, scratch):
     reset(hessian, inverse)
     fresh = True
     constraints(task, origin, x, turn, branch, watched, scratch, values, gradients)
-    most = NEAREST_PENALTY * (math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2) + 0.02)
+    most = NEAREST_PENALTY * (
+        math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2) + NEAREST_PENALTY_LEAST_M
+    )
     for n in range(NEAREST_STEPS):
         slope[:3] = x[:3]
         penalty_programme(
@@ -252,7 +260,7 @@ def minimise(task, origin, x, turn, branch, watched, best, scratch):
         length = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2)
         if length + NEAREST_ANGLE_SCALE_M * abs(step[3]) < NEAREST_CONVERGED_M:
             break
-        scale = min(1.0, NEAREST_LARGEST_TURN_RAD / max(abs(step[3]), 1e-300))
+        scale = min(1.0, NEAREST_LARGEST_TURN_RAD / max(abs(step[3]), LEAST_DIVISOR))
         if n >= NEAREST_TRIAL_STEPS and scale == 1.0:
             ahead = 0.0
             for i in range(3):
@@ -263,7 +271,7 @@ def minimise(task, origin, x, turn, branch, watched, best, scratch):
         merit = (x[0] ** 2 + x[1] ** 2 + x[2] ** 2) / 2 + most * here
         lagrangian_slope(x, gradients, multipliers, rows, before)
         accepted = False
-        for _ in range(10):
+        for _ in range(NEAREST_CUTS):
             for i in range(4):
                 new[i] = x[i] + scale * step[i]
             constraints(
@@ -274,7 +282,7 @@ def minimise(task, origin, x, turn, branch, watched, best, scratch):
             if there < merit:
                 accepted = True
                 break
-            scale /= 2.5
+            scale /= NEAREST_CUT
         if not accepted:
             if fresh:
                 break
@@ -311,7 +319,7 @@ def into_reach(task, origin, x, turn, branch, farthest, scratch):
     """
     q = scratch.q
     tool_axes(task, x[3], scratch.axes)
-    for n in range(3):
+    for n in range(NEAREST_REACH_STEPS):
         for i in range(3):
             task.position[i] = origin[i] + x[i]
         reach = posture(task, scratch.axes, 0.0, branch, q)
@@ -322,7 +330,7 @@ def into_reach(task, origin, x, turn, branch, farthest, scratch):
             return False
         joint_rates(task.geometry, q, scratch.axes, 0.0, turn, scratch.rates, scratch.reach_rates)
         rates = scratch.reach_rates
-        square = max(rates[0] ** 2 + rates[1] ** 2 + rates[2] ** 2, 1e-12)
+        square = max(rates[0] ** 2 + rates[1] ** 2 + rates[2] ** 2, NEAREST_FLAT_REACH)
         for i in range(3):
             x[i] += rates[i] / square * (NEAREST_START_INSIDE_M - reach)
     return True
@@ -445,7 +453,7 @@ def nearest_displacement(task, branch, start, spread, best, rows):
         )
         if margin >= spread:
             return True, x
-        widened += 1.1 * (spread - margin) + NEAREST_INSIDE_M
+        widened += NEAREST_WIDENING * (spread - margin) + NEAREST_INSIDE_M
         if where not in listed[:count]:
             listed[count] = where
             count += 1

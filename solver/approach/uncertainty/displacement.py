@@ -16,13 +16,15 @@ from solver.approach.task.feasibility import tool_axes, trace
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
 from solver.approach.uncertainty.tolerances import (
     DISPLACEMENT_ROUNDS,
+    DISPLACEMENT_STEP_M,
     DISPLACEMENT_STEP_RELATIVE,
     PROBE_HALVINGS,
     SCREENED_DISTANCES,
-    SINGULAR_SINE,
     STRAIGHT_WRIST_PROBES,
+    STRAIGHT_WRIST_SINE,
 )
 from solver.compiled import kernel
+from solver.tolerances import LEAST_DIVISOR
 
 _LOWER_5, _UPPER_5 = 2 * 4, 2 * 4 + 1
 """The limits of joint 5, in whose place a straight wrist may stand."""
@@ -59,7 +61,9 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
             new[i] = gradient[i] * missing / square
             change += (new[i] - delta[i]) ** 2
             length += new[i] * new[i]
-        while shifted(g, position, new, axes, branch, q, at) < 0.0 and change > 1e-18:
+        while (
+            shifted(g, position, new, axes, branch, q, at) < 0.0 and change > DISPLACEMENT_STEP_M**2
+        ):
             change, length = change / 4, 0.0
             for i in range(3):
                 new[i] = (new[i] + delta[i]) / 2
@@ -93,7 +97,7 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
             m11 += first[i] * first[i]
             m12 += first[i] * second[i]
             m22 += second[i] * second[i]
-        determinant = max(m11 * m22 - m12 * m12, 1e-300)
+        determinant = max(m11 * m22 - m12 * m12, LEAST_DIVISOR)
         along = (m22 * value1 - m12 * value2) / determinant
         across = (m11 * value2 - m12 * value1) / determinant
         change, length = 0.0, 0.0
@@ -103,7 +107,7 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
             length += new * new
             delta[i] = new
         reach = shifted(g, position, delta, axes, branch, q, at)
-        near_tip = abs(math.sin(at[4] + g.offsets[4])) < 10 * SINGULAR_SINE
+        near_tip = abs(math.sin(at[4] + g.offsets[4])) < STRAIGHT_WRIST_SINE
         if reach < 0 or near_tip or change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
             break
     return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
@@ -118,10 +122,10 @@ def first_order(g, lower, upper, q, axes, rates, reach_rates, distances):
     reach = joint_rates(g, q, axes, 0.0, axes[:, 1], rates, reach_rates)
     for i in range(6):
         slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
-        distances[2 * i] = (q[i] - lower[i]) / max(slope, 1e-300)
-        distances[2 * i + 1] = (upper[i] - q[i]) / max(slope, 1e-300)
+        distances[2 * i] = (q[i] - lower[i]) / max(slope, LEAST_DIVISOR)
+        distances[2 * i + 1] = (upper[i] - q[i]) / max(slope, LEAST_DIVISOR)
     slope = math.sqrt(reach_rates[0] ** 2 + reach_rates[1] ** 2 + reach_rates[2] ** 2)
-    distances[2 * REACH] = reach / max(slope, 1e-300)
+    distances[2 * REACH] = reach / max(slope, LEAST_DIVISOR)
 
 
 @kernel
@@ -275,9 +279,9 @@ def beside_straight_wrist(
     behind(pose, retreats[n], position)
     joint_rates(g, rows[n], axes, 0.0, axes[:, 1], rates, reach_rates)
     along, across = rates[4, :3].copy(), rates[3, :3].copy()
-    along /= max(math.sqrt(np.dot(along, along)), 1e-300)
+    along /= max(math.sqrt(np.dot(along, along)), LEAST_DIVISOR)
     across -= np.dot(across, along) * along
-    across /= max(math.sqrt(np.dot(across, across)), 1e-300)
+    across /= max(math.sqrt(np.dot(across, across)), LEAST_DIVISOR)
     for k in range(STRAIGHT_WRIST_PROBES):
         turn = 2 * math.pi * k / STRAIGHT_WRIST_PROBES
         direction = math.cos(turn) * along + math.sin(turn) * across

@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from solver import InvalidProblem, Options, Problem, Robot, Target, solve
+from solver.frames.tolerances import ORTHONORMAL, UNIT_QUATERNION
 from solver.frames.transforms import (
-    ORTHONORMAL,
-    UNIT_QUATERNION,
     RigidTransform,
     transform_from_matrix,
     transform_from_quaternion,
