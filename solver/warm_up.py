@@ -19,7 +19,8 @@ from solver.planner.solve import solve
 from solver.problem.options import NORMS, Options
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
-from solver.robots.model import Robot, load_robot, robot_names
+from solver.robots.files import load_robot, robot_names
+from solver.robots.model import Robot
 from solver.sequencing.tolerances import EXACT_TARGETS
 
 

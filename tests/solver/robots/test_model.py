@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from solver import InvalidRobot, Robot, UnknownRobot, load_robot, robot_names
-from solver.robots.model import parse_robot
+from solver.robots.files import parse_robot
 
 DOCUMENT = (resources.files("solver.robots") / "tabletop.toml").read_text()
 RAIL = (resources.files("solver.robots") / "puma560_rail.toml").read_text()
