@@ -7,6 +7,7 @@ from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Arc
 from solver.sequencing.gather import gather
 from solver.sequencing.ladder_graph import refined_ladder
@@ -43,7 +44,7 @@ def even_ladder_effort(problem: Problem, angles: int) -> tuple[float, int]:
 def greedy_effort(problem: Problem) -> float:
     """Total effort of going from target to target, each time with the least effort for it alone."""
     reference, total = problem.start, 0.0
-    ends = np.array([problem.options.standoff_m, 0.0])
+    ends = even_retreats(problem.options, 2)
     for target in problem.targets:
         task = approach_task(problem, target, reference)
         best = best_on_arcs(task)

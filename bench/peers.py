@@ -151,6 +151,4 @@ def pose_error(peer: Peer, problem: Problem, count: int, seed: int) -> float:
 
 
 def _limits(problem: Problem) -> tuple[Array, Array]:
-    margin = problem.options.limit_margin_rad
-    robot = problem.robot
-    return np.asarray(robot.lower + margin), np.asarray(robot.upper - margin)
+    return problem.robot.limits_within(problem.options.limit_margin_rad)

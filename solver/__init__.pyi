@@ -29,7 +29,8 @@ from solver.problem.thinning import (
     ThinningSelection,
     select_blossoms,
 )
-from solver.robots.model import Joint, Link, Robot, Tool, load_robot, parse_robot, robot_names
+from solver.robots.files import load_robot, parse_robot, robot_names
+from solver.robots.model import Joint, Link, Robot, Tool
 from solver.robots.toml_writing import robot_to_toml
 from solver.urdf.reading import robot_from_urdf
 from solver.urdf.writing import robot_to_urdf

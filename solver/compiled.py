@@ -11,6 +11,7 @@ of all kernels. A changed kernel therefore never meets an old binary.
 import hashlib
 import logging
 import os
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -19,24 +20,34 @@ import llvmlite.binding as llvm
 import numba
 from numba.core import config
 
+_SOLVER = Path(__file__).parent
 _MARK = "from solver.compiled import"
+_IMPORT = re.compile(r"^\s*from (solver\.[\w.]+) import", re.MULTILINE)
 
 
-def kernel_sources() -> tuple[Path, ...]:
-    """The files that compiled code depends on: kernels, and the constants compiled into them."""
-    return tuple(
-        file
-        for file in sorted(Path(__file__).parent.rglob("*.py"))
-        if file.name in ("compiled.py", "tolerances.py")
-        or _MARK in file.read_text(encoding="utf-8")
-    )
+def kernel_sources(solver: Path = _SOLVER) -> tuple[Path, ...]:
+    """The files that compiled code depends on: kernels, and every file of ours that they import.
+
+    What a kernel uses of another module, and what that one made of a third, is compiled into it.
+    """
+    texts = {file: file.read_text(encoding="utf-8") for file in solver.rglob("*.py")}
+    waiting = [solver / "compiled.py", *(file for file in texts if _MARK in texts[file])]
+    found: set[Path] = set()
+    while waiting:
+        file = waiting.pop()
+        if file in found or file not in texts:
+            continue
+        found.add(file)
+        modules = _IMPORT.findall(texts[file])
+        waiting += [solver.parent / (module.replace(".", "/") + ".py") for module in modules]
+    return tuple(sorted(found))
 
 
-def cache_folder() -> Path:
+def cache_folder(solver: Path = _SOLVER) -> Path:
     """Where this machine keeps the compiled kernels of this version of the sources."""
     root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     digest = hashlib.sha256()
-    for file in kernel_sources():
+    for file in kernel_sources(solver):
         digest.update(file.read_bytes())
     cpu = llvm.get_host_cpu_name()  # type: ignore[no-untyped-call]
     python = f"{sys.version_info.major}.{sys.version_info.minor}"

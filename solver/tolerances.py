@@ -5,7 +5,6 @@ What one room alone uses stands in that room's own `tolerances.py`.
 
 from typing import Final
 
-# --- Accepted by the verifier -------------------------------------------------------------------
 LIMIT_EXCESS_RAD: Final = 1e-9
 """A joint beyond its limit by more is refused [rad]. Rounding of the closed form is 1e-14; an
 interior-point solver relaxes bounds by 1e-8, which is why its answers are polished."""
@@ -20,13 +19,12 @@ EFFORT_ERROR_RELATIVE: Final = 1e-9
 """A claimed effort against the recomputed one, relative to max(1, effort)."""
 
 SAME_BRANCH_RAD: Final = 1e-4
-"""A row and the closed form's posture on its branch. Two branches are further apart unless the arm
-is all but singular, where the inverse itself loses digits."""
+"""How far a row may be from the closed form's posture on its branch [rad]. Two branches are further
+apart unless the arm is all but singular, where the inverse itself loses digits."""
 
 SAME_POSTURE_RAD: Final = 1e-9
 """Two postures that have to be one: where segments join, or rows repeat another field [rad]."""
 
-# --- Inverse kinematics -------------------------------------------------------------------------
 REACH_ROUNDING_M: Final = 1e-12
 """A wrist centre beyond reach by less is at the edge [m]: rounding of lengths near 0.5 m."""
 
@@ -34,10 +32,10 @@ SINGULAR_WRIST: Final = 1e-10
 """sin(q5) below which q4 and q6 turn about one axis and q4 is set to zero. Above it the directions
 that give q4 still have six digits; below it the axis error made is at most 1e-10 rad."""
 
-# --- Feasible arcs and search -------------------------------------------------------------------
 NEAR_FEASIBLE_RAD: Final = 0.3
-"""A sampled maximum of the margin below -this is not looked at more closely: from there the margin
-would have to rise by 0.3 rad within 0.5 deg of approach angle."""
+"""A thinning posture further outside its limits [rad], or out of reach [m], is not looked at more
+closely: its cut-in is not traced, and no programme starts there, as relaxations of centimetres and
+tenths of a radian seldom bring it back."""
 
 JOINT_RATE_RAD_M: Final = 250.0
 """Joint travel for tool travel in the cut-in above which it counts as a wrist jump [rad/m]: 14
@@ -53,23 +51,22 @@ target solved again. One or two are usual: the posture moves quadratically littl
 BATCH_PART: Final = 4096
 """Targets of a batch that are made ready for the inner loops at a time: about 3 MB."""
 
-# --- Arms without a closed form, arms on a rail, weights -----------------------------------------
 NUMERICAL_DAMPING: Final = 1e-9
-"""Damping left at the target; half the squared error is added on the way there (Sugihara 2011)."""
+"""Damping of the numerical inverse at the target, relative to a Jacobian of size one; half the
+squared error is added on the way there (Sugihara 2011)."""
 
-# --- Nonlinear programme ------------------------------------------------------------------------
+LEAST_DIVISOR: Final = 1e-300
+"""What a divisor that may be zero is raised to [any]: the quotient is as good as infinite then, and
+none becomes a NaN."""
+
 NLP_ITERATIONS: Final = 200
 """IPOPT's iteration limit; warm-started problems take about 15. A budget counts iterations, never
 seconds, so that the same request has the same answer."""
-
-NLP_BOUND_PUSH: Final = 1e-5
-"""How far IPOPT moves its start inside the bounds, absolute and relative, for the same reason."""
 
 EXACT_ZERO: Final = 1e-15
 """A cosine or sine of a link twist below this is zero: a right angle's cosine comes as 6e-17 and
 would keep dead terms in every expression."""
 
-# --- Trajectory ---------------------------------------------------------------------------------
 TRAJECTORY_STEP_S: Final = 0.02
 """Largest time between two rows of a moving segment [s]; the servos' own loop is not faster."""
 

@@ -13,9 +13,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from solver import compiled
+from solver.approach.numerical.warm_start import numerical_warm_start
+from solver.approach.task.task import approach_task
+from solver.kinematics.forward import forward_kinematics
+from solver.methods.registry import METHODS
+from solver.planner.solve import solve
+from solver.problem.options import NORMS, Options
+from solver.problem.problem import Problem
 from solver.problem.targets import Target
+from solver.robots.files import load_robot, robot_names
 from solver.robots.model import Robot
+from solver.sequencing.tolerances import EXACT_TARGETS
 
 TELL_S: Final = 10.0
 """How often it is told how far the compilation is [s]: people give up on a minute of silence."""
@@ -29,21 +40,16 @@ def warm_up() -> None:
 
 def methods() -> None:
     """One small problem by every method for each robot."""
-    from solver import Options, Problem, load_robot, robot_names, solve
-    from solver.methods.registry import METHODS
-
     for name in robot_names():
         robot = load_robot(name)
         for method in METHODS:
-            for norm in ("l1", "l2"):
+            for norm in NORMS:
                 options = Options(method=method, norm=norm)
                 solve(Problem(robot, [home_target(robot)], options=options))
 
 
 def refusals_and_bounds() -> None:
     """What is refused, certified, uncertain or relaxed goes through kernels of its own."""
-    from solver import Options, Problem, load_robot, solve
-
     robot = load_robot("tabletop")
     target = home_target(robot)
     several = [
@@ -59,9 +65,6 @@ def refusals_and_bounds() -> None:
 
 def orders() -> None:
     """Few targets are ordered by other kernels than many; robots share them."""
-    from solver import Options, Problem, load_robot, solve
-    from solver.sequencing.tolerances import EXACT_TARGETS
-
     robot = load_robot("tabletop")
     for count in (2, EXACT_TARGETS + 1):
         targets = [replace(home_target(robot), id=str(k)) for k in range(count)]
@@ -70,10 +73,6 @@ def orders() -> None:
 
 def other_arms() -> None:
     """No robot that ships needs the numerical inverse; one brought by somebody may."""
-    from solver import Problem, load_robot
-    from solver.approach.numerical.warm_start import numerical_warm_start
-    from solver.approach.task.task import approach_task
-
     robot = load_robot("tabletop")
     problem = Problem(robot, [home_target(robot)])
     numerical_warm_start(approach_task(problem, problem.targets[0], problem.start))
@@ -120,10 +119,6 @@ def home_target(robot: Robot) -> Target:
 
     Near, because joints that need not move at all are not what a first request is like.
     """
-    import numpy as np
-
-    from solver.kinematics.forward import forward_kinematics
-
     tool = robot.tool(robot.default_tool)
     assert tool is not None, "parse_robot checks it"
     home, middle = np.array(robot.home_joints), (robot.lower + robot.upper) / 2

@@ -1,1 +1,1 @@
-"""In front of every route: tokens and scopes (a row a route), origins, sizes, times, rates, logs."""
+"""In front of every route: tokens, scopes (a row a route), origins, sizes, times, rates, logs."""

@@ -100,18 +100,23 @@ def _answered(name: str) -> dict[str, Any]:
 
 def known_values() -> Mapping[str, Sequence[str]]:
     """What the solver knows today, by the options that take names."""
-    from solver.methods.nlp.backends import BACKENDS
-    from solver.methods.nlp.quadratic import QP_SOLVERS
-    from solver.methods.registry import METHODS
-    from solver.problem.options import INCLUDES, NORMS, ORDERS, WEIGHTS
+    from solver.problem.options import (
+        BACKEND_NAMES,
+        INCLUDES,
+        METHOD_NAMES,
+        NORMS,
+        ORDERS,
+        QP_SOLVER_NAMES,
+        WEIGHTS,
+    )
 
     return {
-        "method": tuple(METHODS),
+        "method": METHOD_NAMES,
         "order": ORDERS,
         "norm": NORMS,
         "weights": WEIGHTS,
-        "nlp_backend": tuple(BACKENDS),
-        "qp_solver": QP_SOLVERS,
+        "nlp_backend": BACKEND_NAMES,
+        "qp_solver": QP_SOLVER_NAMES,
         "include": INCLUDES,
     }
 

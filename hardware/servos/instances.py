@@ -10,7 +10,8 @@ from typing import Final
 
 from hardware.servos.joints import arm_names
 from solver.exceptions import InvalidRobot, UnknownRobot
-from solver.robots.model import Robot, load_robot, robot_names
+from solver.robots.files import load_robot, robot_names
+from solver.robots.model import Robot
 
 SIMULATED_SUFFIX: Final = "-sim"
 

@@ -2,9 +2,9 @@
 
 from typing import Final
 
-# --- Feasible arcs and search -------------------------------------------------------------------
 ARC_SAMPLES: Final = 720
-"""Approach angles at which the feasibility margin is sampled before arcs are refined (0.5 deg)."""
+"""Approach angles on one turn, 0.5 degrees apart, at which effort is drawn, and at which the
+displacement that an approach bears is looked at before its ends are refined."""
 
 ARC_CELLS: Final = 72
 """Cells of one turn in which arcs are searched (5 deg). A single joint's margin is smooth in the
@@ -15,16 +15,16 @@ CELL_SWING_COSINE: Final = 0.7
 straight wrist joints 4 and 6 turn by half a turn in an arbitrarily short way."""
 
 ANGLE_STEP_RAD: Final = 1e-10
-"""Width to which a one-dimensional optimum in the approach angle is bracketed [rad]."""
+"""Width to which an approach angle is closed in on [rad]: the best of those refused, and cells in
+which a joint swings too far for its kinks to be told apart."""
 
 EXCHANGE_DENSITY: Final = 8
-"""Postures looked at between two rows of the cut-in when such a posture is searched."""
+"""Postures looked at between two rows of the cut-in where a joint may break its limit there."""
 
 LEAST_EFFORT_CELLS: Final = 4
-"""Cells of the shortest arc."""
+"""Cells of the shortest arc: slopes beside a cell are what tells that effort is smooth in it."""
 
-# --- Uncertain targets --------------------------------------------------------------------------
 UNCERTAINTY_DEVIATIONS: Final = 3.0
-"""Standard deviations that a target may be away from where it was seen. The nearest limit is all
-but flat at that scale: 99.87 % of normally distributed targets are on its feasible side, and 97 %
-in the whole ball."""
+"""Factor on the standard deviation: how far a target may be from where it was seen. The nearest
+limit is all but flat at that scale: 99.87 % of normally distributed targets are on its feasible
+side, and 97 % in the whole ball."""

@@ -20,6 +20,7 @@ from solver.planner.one_target import solve_between_rows_too
 from solver.planner.proposal import propose
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason, SolverReport
 from solver.robots.model import Array
 from solver.verification.verify import refusal, verify
@@ -173,8 +174,7 @@ def _answer(task: ApproachTask, solve: Solve) -> Answer:
     outcome, solved = solve_between_rows_too(task, solve)
     if isinstance(outcome, Reason):
         return Answer(outcome, solved, None)
-    options = task.options
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    retreats = even_retreats(task.options)
     rows = retreat_rows(task.robot, task.tool, outcome.thinning_joints, outcome.branch, retreats)
     return Answer(outcome, solved, rows)
 

@@ -17,6 +17,7 @@ from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
 from solver.methods.nlp.relaxed import pose_of, solve_relaxed
 from solver.problem.effort import posture_effort
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason
 from solver.robots.model import Array
 from solver.tolerances import AXIS_ERROR_RAD, LIMIT_EXCESS_RAD, POSITION_ERROR_M
@@ -104,7 +105,7 @@ def _random_start(task: ApproachTask, rng: np.random.Generator) -> Start:
     side = int(rng.choice(task.tool_sides))
     postures = np.tile(rng.uniform(task.lower, task.upper), (2, 1))
     angle = float(rng.uniform(-math.pi, math.pi))
-    retreats = np.array([0.0, task.options.standoff_m])
+    retreats = even_retreats(task.options, 2)[::-1]
     bounds = angle - math.pi, angle + math.pi
     return Start(side, angle, *bounds, postures, retreats, strike_m=0.0, swing_rad=np.zeros(3))
 

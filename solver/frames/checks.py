@@ -2,14 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from typing import Final
 
 from solver.exceptions import Fault
-from solver.frames.tolerances import SHORTEST_DIRECTION
-
-FURTHEST_M: Final = 1e7
-"""Coordinates beyond are refused [m]. Northings of maps end there, where doubles still tell points
-apart that are 2 nm from each other."""
+from solver.frames.tolerances import FURTHEST_M, SHORTEST_DIRECTION
 
 
 def position_faults(position_m: Sequence[float], path: tuple[str | int, ...]) -> Sequence[Fault]:

@@ -9,41 +9,24 @@ transformation parameters between two point patterns, IEEE PAMI 13 (1991), 376-3
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from scipy.special import stdtrit
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.checks import position_faults
+from solver.frames.tolerances import (
+    COLLINEAR,
+    EXACT_FIT,
+    LEAST_PAIRS,
+    MIRROR_FACTOR,
+    MOST_PAIRS,
+    SAME_PLACE_M,
+    SCALE_FALSE_ALARM,
+    SCALE_LEAST,
+)
 from solver.frames.transforms import RigidTransform, transform_from_rotation
 from solver.robots.model import Array
-
-LEAST_PAIRS: Final = 3
-"""Fewer leave a rotation open."""
-
-MOST_PAIRS: Final = 1000
-"""Pairs of one request; the mean of that many adds nothing that a camera has."""
-
-SAME_PLACE_M: Final = 1e-3
-"""Points whose spread about their centre (root mean square) is below are one point [m]."""
-
-COLLINEAR: Final = 0.01
-"""Spread across the longest direction, as a share of the spread along it, below which points are on
-a line. At half a metre that is 5 mm, what the arm itself may be off: no rotation follows."""
-
-SCALE_LEAST: Final = 1e-3
-"""A scale this near to one is one: 1 mm in a metre."""
-
-SCALE_FALSE_ALARM: Final = 1e-3
-"""How often noise alone, if it is normal, is taken for a scale that is off."""
-
-MIRROR_FACTOR: Final = 5.0
-"""How many times better a reflection must fit, and how far the points' smallest spread must be
-above what the reflection leaves: flat sets are their own mirror images, as far as noise tells."""
-
-EXACT_FIT: Final = 1e-9
-"""Residuals below this share of the spread are rounding."""
 
 
 @dataclass(frozen=True)

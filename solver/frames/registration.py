@@ -8,7 +8,6 @@ import numpy as np
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.point_pairs import (
-    LEAST_PAIRS,
     Fit,
     PointPair,
     fit,
@@ -17,27 +16,18 @@ from solver.frames.point_pairs import (
     root_mean_square,
     why_no_rotation,
 )
+from solver.frames.tolerances import (
+    CLEARLY_BETTER,
+    LARGE_RESIDUAL_M,
+    LEAST_PAIRS,
+    MOST_ROTATION_STD_RAD,
+    OUTLIER_FACTOR,
+    OUTLIER_PAIRS,
+    POOR_ROTATION_STD_RAD,
+    UNIT_NEARNESS,
+)
 from solver.frames.transforms import FrameWarning, RigidTransform
 from solver.robots.model import Array
-
-LARGE_RESIDUAL_M: Final = 0.005
-"""A residual above this is no rounding of the arm's [m]: goals rounded to ticks move the tool by up
-to 1.2 mm, noise of a single read by up to 3.7 mm."""
-
-MOST_ROTATION_STD_RAD: Final = 0.1
-"""A rotation known worse is refused [rad]: 5 cm at half a metre."""
-
-POOR_ROTATION_STD_RAD: Final = 0.01
-"""A rotation known worse is warned of [rad]: 5 mm at half a metre."""
-
-CLEARLY_BETTER: Final = 5.0
-"""One explanation has residuals this many times smaller than another: no accident of noise."""
-
-OUTLIER_PAIRS: Final = 5
-"""Pairs from which one may be accused: the others are then enough to contradict it."""
-
-OUTLIER_FACTOR: Final = 3.0
-"""How many times better the others must agree without it."""
 
 UNITS: Final = {
     "millimetres": 1e-3,
@@ -46,9 +36,6 @@ UNITS: Final = {
     "feet": 0.3048,
 }
 """Lengths of units that are taken for metres [m]."""
-
-UNIT_NEARNESS: Final = 0.05
-"""A scale within this share of a unit's is that unit's."""
 
 
 @dataclass(frozen=True)

@@ -9,29 +9,20 @@ base, and the rotation that turns directions of the frame into directions of the
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.checks import position_faults, vector_fault
-from solver.frames.tolerances import SHORTEST_DIRECTION
+from solver.frames.tolerances import (
+    FEW_DIGITS,
+    ORTHONORMAL,
+    SHORTEST_DIRECTION,
+    SUSPICIOUS_M,
+    UNIT_QUATERNION,
+)
 from solver.robots.model import Array
-
-UNIT_QUATERNION: Final = 1e-3
-"""How far the length of a quaternion may be from one: what is left of it written with three digits.
-It is brought to length one, which turns nothing."""
-
-ORTHONORMAL: Final = 2e-3
-"""How far R'R may be from the identity, in each entry: three digits again (2 * 5e-4 * sqrt(3)). The
-nearest rotation is taken, which differs by less than 1e-3 rad: half a millimetre at this arm."""
-
-FEW_DIGITS: Final = 1e-6
-"""Change of a number, when a rotation is made exact, from which that is worth a warning."""
-
-SUSPICIOUS_M: Final = 100.0
-"""A frame further away was probably not sent in metres [m]; maps are, so it is only a warning."""
 
 
 @dataclass(frozen=True)

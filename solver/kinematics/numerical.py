@@ -22,7 +22,7 @@ from solver.kinematics.tolerances import (
     NUMERICAL_POLISHED,
 )
 from solver.robots.model import Array, Robot, Tool
-from solver.tolerances import NUMERICAL_DAMPING
+from solver.tolerances import LEAST_DIVISOR, NUMERICAL_DAMPING
 
 
 class Chain(NamedTuple):
@@ -168,7 +168,7 @@ def solve_damped(columns, damping, error, solution):
             for k in range(j):
                 total -= lower[i, k] * lower[j, k]
             if i == j:
-                lower[i, i] = math.sqrt(max(total, 1e-300))
+                lower[i, i] = math.sqrt(max(total, LEAST_DIVISOR))
             else:
                 lower[i, j] = total / lower[j, j]
     for i in range(6):

@@ -2,14 +2,12 @@
 
 from typing import Final
 
-# --- Inverse kinematics -------------------------------------------------------------------------
 TINY_M2: Final = 1e-30
 """A squared distance below which a point lies on the axis and has no direction [m2]."""
 
 RIGHT_ANGLE_RAD: Final = 1e-12
 """How far a link twist may be from a right angle for the closed form [rad]: rounding of radians."""
 
-# --- Arms without a closed form, arms on a rail, weights -----------------------------------------
 WEIGHT_POSTURES: Final = 4096
 """Postures over which torques are averaged for the weights: the mean is sure to about 1 %."""
 
@@ -23,8 +21,8 @@ NUMERICAL_FOLLOWED: Final = 1e-10
 """Error [m and rad] above which a row of a cut-in was not reached from its neighbour."""
 
 NUMERICAL_MOST_PIECES: Final = 64
-"""Most pieces into which the way from that neighbour is cut, by fours: 2 mm to 30 um. A joint that
-turns too fast for that is beyond JOINT_RATE_RAD_M."""
+"""Most pieces into which the way from a row to its neighbour is cut, by fours: 2 mm to 30 um. A
+joint that turns too fast for that is beyond JOINT_RATE_RAD_M."""
 
 NUMERICAL_POLISH_STEPS: Final = 12
-"""Newton steps allowed for it; the error is squared in each, so 3 or 4 are usual."""
+"""Newton steps allowed to polish a posture; the error is squared in each, so 3 or 4 are usual."""

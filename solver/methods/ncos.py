@@ -26,6 +26,7 @@ from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
 from solver.methods.tolerances import RELAXED_NEAREST, RELAXED_STARTS
 from solver.problem.effort import posture_effort
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason
 from solver.robots.model import Array
 
@@ -78,7 +79,7 @@ def solve_on_arc(
     task: ApproachTask, warm_start: ArcOptimum, next_thinning: Sequence[float] | None = None
 ) -> ProgrammeResult:
     """The unrelaxed programme from a warm start, its approach angle kept on that start's arc."""
-    arc, ends = warm_start.arc, np.array([task.options.standoff_m, 0.0])
+    arc, ends = warm_start.arc, even_retreats(task.options, 2)
     rows = task.postures(warm_start.angle_rad, arc.tool_side, arc.branch, ends)
     start = Start(
         arc.tool_side,
@@ -141,7 +142,7 @@ class _Coupling:
         if self.next_thinning is None:
             return candidate.effort
         task = self.task
-        ends = np.array([task.options.standoff_m, 0.0])
+        ends = even_retreats(task.options, 2)
         standby = retreat_rows(
             task.robot, task.tool, candidate.thinning_joints, candidate.branch, ends
         )[0]

@@ -7,6 +7,7 @@ import numpy as np
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.families import Rail
 from solver.methods.tolerances import RAIL_POSITIONS
+from solver.problem.effort import posture_effort
 from solver.robots.model import Array
 
 
@@ -27,8 +28,8 @@ def at_rail(task: ApproachTask, rail: Rail, position_m: float) -> ApproachTask:
 
 def rail_effort(task: ApproachTask, position_m: float) -> float:
     """What the slide's travel from the reference adds to the effort of any approach there."""
-    change = abs(position_m - task.reference[0])
-    return task.joint_weights[0] * (change**2 if task.options.norm == "l2" else change)
+    options, weights = task.options, task.joint_weights
+    return posture_effort([position_m], task.reference[:1], weights[:1], options.norm)
 
 
 def rail_positions(task: ApproachTask) -> Array:

@@ -2,12 +2,10 @@
 
 from typing import Final
 
-# --- Arms without a closed form, arms on a rail, weights -----------------------------------------
 RAIL_POSITIONS: Final = 25
 """Positions of a slide tried with the closed form: 5 cm apart on 1.2 m. Not an optimum in the
 slide; `ncos` starts from the best of them."""
 
-# --- Nonlinear programme ------------------------------------------------------------------------
 RELAXED_STARTS: Final = 3
 """Starts of a relaxed programme from the cheapest feasible corners of the relaxations."""
 

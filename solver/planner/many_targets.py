@@ -122,8 +122,7 @@ def _leave_between_rows(
 ) -> NDArray[np.bool_]:
     """Whether a joint may leave its limits between two rows, shape (n,), on a second look too."""
     leaves = np.empty(len(positions), dtype=np.bool_)
-    margin = problem.options.limit_margin_rad
-    lower, upper = problem.robot.lower + margin, problem.robot.upper - margin
+    lower, upper = problem.robot.limits_within(problem.options.limit_margin_rad)
     many_may_leave_between(optima.paths, lower, upper, leaves)
     again = np.flatnonzero(leaves & (optima.branches != NO_BRANCH))
     if len(again):

@@ -56,6 +56,11 @@ class Options:
     include: Sequence[str] | None = None
 
     @property
+    def squared(self) -> bool:
+        """Whether joint travel counts squared: the norm is l2."""
+        return self.norm == "l2"
+
+    @property
     def timed(self) -> bool:
         """Whether motion is part of the answer; by default it is, up to FULL_ANSWER_TARGETS."""
         return self.include is None or not {"transfer", "trajectory"}.isdisjoint(self.include)

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from solver.exceptions import Fault, InvalidProblem
-from solver.problem.tolerances import SAME_POINT_M
+from solver.problem.tolerances import LONGEST_SEGMENT_M, SAME_POINT_M
 from solver.robots.model import Array
 
 # Whole nanometres, so that a blossom at a window's boundary is on the side where decimals put it.
@@ -26,9 +26,6 @@ _PERIOD: Final = 130_000_000
 
 MOST_FAULTS: Final = 1000
 """Nobody reads more, and a request may have hundreds of thousands of blossoms."""
-
-LONGEST_SEGMENT_M: Final = 100.0
-"""A segment longer than any tree is a mistake of units [m]."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The robot model: one TOML file a robot, read into frozen dataclasses.
+"""The robot model: frozen dataclasses; `solver.robots.files` reads them from files.
 
 Classic (standard) Denavit-Hartenberg convention: the transform of link i is
 Rot_z(theta_i) Trans_z(d_i) Trans_x(a_i) Rot_x(alpha_i) (T equation 1). A revolute joint turns,
@@ -6,37 +6,21 @@ theta = q + offset; a prismatic joint slides along the same z axis, d = q + d_m,
 Joint vectors are radians for revolute and metres for prismatic joints.
 """
 
-import hashlib
 import math
-import os
-import tomllib
-from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, fields
-from functools import cached_property, lru_cache
-from importlib import resources
-from pathlib import Path
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.exceptions import InvalidRobot, UnknownRobot
+from solver.exceptions import InvalidRobot
 from solver.robots.rigid import transform
 
 Array = NDArray[np.float64]
 
 REVOLUTE: Final = "revolute"
 PRISMATIC: Final = "prismatic"
-
-ROBOTS_VARIABLE: Final = "PRUNUS_ROBOTS_DIR"
-"""Environment variable that names a folder of further model files."""
-
-# Fields whose unit depends on the joint's kind, and the ending of their key in a model file.
-_ENDINGS: Final[Mapping[str, Mapping[str, str]]] = {
-    REVOLUTE: {"lower": "_rad", "upper": "_rad", "velocity": "_rad_s", "acceleration": "_rad_s2"},
-    PRISMATIC: {"lower": "_m", "upper": "_m", "velocity": "_m_s", "acceleration": "_m_s2"},
-}
-_DRIVE_KEYS: Final = {REVOLUTE: "drive_inertia_kg_m2", PRISMATIC: "drive_mass_kg"}
 
 
 @dataclass(frozen=True)
@@ -178,6 +162,14 @@ class Robot:
         links = sum(math.hypot(joint.a_m, _longest(joint)) for joint in self.joints)
         return math.hypot(*self.mount_position_m) + links + abs(tool.length_m)
 
+    def limits_within(self, margin_rad: float) -> tuple[Array, Array]:
+        """Lower and upper limits, those of revolute joints drawn in by a margin, shape (n,) each.
+
+        Prismatic joints keep theirs: an angle says nothing about metres.
+        """
+        inset = margin_rad * self.turning
+        return np.asarray(self.lower + inset), np.asarray(self.upper - inset)
+
     def limit_margin(self, rows: Array) -> Array:
         """Smallest distance of a revolute joint to its limit, rows (..., n) to shape (...) [rad].
 
@@ -186,105 +178,6 @@ class Robot:
         turning = self.turning > 0
         inside = np.minimum(rows - self.lower, self.upper - rows)
         return np.asarray(inside[..., turning].min(axis=-1))
-
-
-def robot_names() -> tuple[str, ...]:
-    """Names of the robots that ship and of those in the folder PRUNUS_ROBOTS_DIR, sorted."""
-    return tuple(sorted(_model_files()))
-
-
-def load_robot(name: str | Path) -> Robot:
-    """The robot of that name, or the one in the model file at that path.
-
-    Raises:
-        UnknownRobot: no model file has that name.
-        InvalidRobot: the file cannot be read or makes no sense.
-    """
-    if isinstance(name, Path):
-        return parse_robot(name.read_bytes())
-    files = _model_files()
-    if name not in files:
-        raise UnknownRobot(name, known=tuple(sorted(files)))
-    robot = parse_robot(files[name].read_bytes())
-    if robot.name != name:
-        raise InvalidRobot(f"{name}.toml: the robot in it is named {robot.name!r}")
-    return robot
-
-
-def _model_files() -> dict[str, Path]:
-    shipped = Path(str(resources.files("solver.robots")))
-    folders = [shipped]
-    if own := os.environ.get(ROBOTS_VARIABLE):
-        folders.append(Path(own))
-    files: dict[str, Path] = {}
-    for folder in folders:
-        if not folder.is_dir():
-            raise InvalidRobot(f"{ROBOTS_VARIABLE} names no folder")
-        for file in sorted(folder.glob("*.toml")):
-            if file.stem in files:
-                raise InvalidRobot(f"{file.stem}: a robot of this name ships; take another name")
-            files[file.stem] = file
-    return files
-
-
-@lru_cache(maxsize=64)
-def parse_robot(document: bytes) -> Robot:
-    """A robot from the bytes of a model file; the same bytes are parsed once.
-
-    Raises:
-        InvalidRobot: not TOML, fields missing or unknown, or values that make no sense.
-    """
-    try:
-        data = tomllib.loads(document.decode())
-        mount = data.pop("mount_position_m", (0.0, 0.0, 0.0))
-        in_degrees = [math.radians(value) for value in data.pop("mount_rpy_deg", (0.0, 0.0, 0.0))]
-        turn = data.pop("mount_rpy_rad", in_degrees)
-        roll = data.pop("flange_roll_rad", math.radians(data.pop("flange_roll_deg", 0.0)))
-        robot = Robot(
-            joints=tuple(_joint(entry) for entry in data.pop("joints")),
-            tools=tuple(Tool(**entry) for entry in data.pop("tools")),
-            home_joints=_numbers(data.pop("home_joints")),
-            version=hashlib.sha256(document).hexdigest()[:12],
-            mount_position_m=_three(mount),
-            mount_rpy_rad=_three(turn),
-            flange_roll_rad=float(roll),
-            **data,
-        )
-        check_robot(robot)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError, ValueError) as error:
-        raise InvalidRobot(f"the model file cannot be read: {error}") from error
-    return robot
-
-
-def _joint(entry: Mapping[str, Any]) -> Joint:
-    values: dict[str, Any] = {}
-    kind = entry.get("kind", REVOLUTE)
-    if kind not in _ENDINGS:
-        raise ValueError(f"joint {entry.get('name')}: kind {kind!r} is none of {list(_ENDINGS)}")
-    by_key = {f"{field}{ending}": field for field, ending in _ENDINGS[kind].items()}
-    for key, value in entry.items():
-        in_degrees = key.endswith("_deg")
-        name = f"{key.removesuffix('_deg')}_rad" if in_degrees else key
-        number = math.radians(value) if in_degrees else value
-        values[by_key.get(name, name)] = number
-    required = {field.name for field in fields(Joint) if field.default is MISSING}
-    keys = {field: key for key, field in by_key.items()}
-    missing = sorted(keys.get(field, field) for field in required - values.keys())
-    if missing:
-        raise KeyError(f"joint {entry.get('name')}: {', '.join(missing)}")
-    if "link" in values:
-        values["link"] = _link(values["link"], kind)
-    return Joint(**values)
-
-
-def _link(entry: Mapping[str, Any], kind: str) -> Link:
-    values = dict(entry)
-    drive = float(values.pop(_DRIVE_KEYS[kind], 0.0))
-    centre = _three(values.pop("centre_m"))
-    xx, yy, zz, xy, xz, yz = _numbers(values.pop("inertia_kg_m2"))
-    return Link(
-        centre_m=centre, inertia_kg_m2=(xx, yy, zz, xy, xz, yz), drive_inertia=drive, **values
-    )
 
 
 def check_robot(robot: Robot) -> None:
@@ -326,15 +219,6 @@ def _longest(joint: Joint) -> float:
     if joint.kind == REVOLUTE:
         return joint.d_m
     return max(abs(joint.d_m + joint.lower), abs(joint.d_m + joint.upper))
-
-
-def _numbers(values: Any) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)
-
-
-def _three(values: Any) -> tuple[float, float, float]:
-    x, y, z = _numbers(values)
-    return x, y, z
 
 
 def _read_only(values: Any) -> Array:

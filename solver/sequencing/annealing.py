@@ -13,12 +13,15 @@ import math
 import numpy as np
 
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 from solver.sequencing.min_plus import relax
 from solver.sequencing.tolerances import (
     ANNEAL_COLD,
+    ANNEAL_COOLED_TRIALS,
     ANNEAL_HOT,
     ANNEAL_LONGEST_RUN,
     ANNEAL_LONGEST_TURN,
+    ANNEAL_TURN_SHARE,
     ANNEAL_WINDOW,
 )
 
@@ -29,8 +32,7 @@ def stage_effort(nodes, before, node):
     total = 0.0
     for i in range(6):
         other = nodes.start[i, 0] if before < 0 else nodes.standby_rows[before, i]
-        change = abs(nodes.thinning_rows[node, i] - other)
-        total += change * change if nodes.squared else change
+        total += joint_cost(nodes.thinning_rows[node, i] - other, nodes.squared)
     return total
 
 
@@ -138,7 +140,7 @@ def anneal(nodes, order, chosen, neighbours, trials, seed):
     unit = cost / n
     heat = 0.0
     for trial in range(trials):
-        if trial % 64 == 0:
+        if trial % ANNEAL_COOLED_TRIALS == 0:
             heat = unit * ANNEAL_HOT * (ANNEAL_COLD / ANNEAL_HOT) ** (trial / trials)
         begin, end, to, turn = _proposal(state, order, place, neighbours)
         if begin < 0:
@@ -209,7 +211,7 @@ def _proposal(state, order, place, neighbours):
     Either way a target comes behind one from which it is cheap to reach. A begin of -1 means none.
     """
     n = len(order)
-    if _random(state) < 0.25:
+    if _random(state) < ANNEAL_TURN_SHARE:
         end = _below(state, n)
         near = neighbours[order[end], _below(state, neighbours.shape[1])]
         begin = place[near] + 1

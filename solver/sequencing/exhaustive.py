@@ -13,6 +13,7 @@ import numpy as np
 
 from solver.compiled import kernel
 from solver.sequencing.min_plus import relax
+from solver.sequencing.tolerances import EXACT_OPEN
 
 
 @kernel
@@ -51,7 +52,7 @@ def cheapest_orders(nodes, most):
     n = len(nodes.first) - 1
     count = nodes.thinning.shape[1]
     rest = remaining_costs(nodes)
-    most_open = 64 * most * n
+    most_open = EXACT_OPEN * most * n
     bounds = np.full(most_open, math.inf)
     values = np.full((most_open, count), math.inf)
     orders = np.zeros((most_open, n), dtype=np.int64)

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.approach.task.packed import LOWER, UPPER, jump_cosines
+from solver.problem.effort import cost_scale
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch
@@ -26,9 +28,8 @@ def gather(problem: Problem, numbers: Array, arcs: Sequence[Sequence[Arc]]) -> B
         for arc in own
     ]
     table = np.array(rows, dtype=np.float64).reshape(-1, 4)
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
-    weights, squared = np.asarray(problem.joint_weights), options.norm == "l2"
-    scale = np.sqrt(weights) if squared else weights
+    retreats = even_retreats(options)
+    scale = cost_scale(np.asarray(problem.joint_weights), options.norm)
     limits = numbers[0, 0]
     return Batch(
         numbers=np.ascontiguousarray(np.swapaxes(numbers, 0, 1).reshape(-1, numbers.shape[2])),
@@ -41,6 +42,6 @@ def gather(problem: Problem, numbers: Array, arcs: Sequence[Sequence[Arc]]) -> B
         first_arc=np.concatenate(([0], np.cumsum([len(own) for own in arcs]))).astype(np.int64),
         scale=scale,
         start=scale * np.asarray(problem.start),
-        squared=squared,
+        squared=options.squared,
         turning=bool(np.any(limits[UPPER : UPPER + 6] - limits[LOWER : LOWER + 6] >= 2 * np.pi)),
     )

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 
 
 @kernel
@@ -31,14 +32,15 @@ def relax(values, fixed, fixed_at, fixed_value, others, first, last, squared):
     d, e, f = fixed[3, fixed_at], fixed[4, fixed_at], fixed[5, fixed_at]
     if squared:
         for m in range(first, last):
-            u, v, w = others[0, m] - a, others[1, m] - b, others[2, m] - c
-            x, y, z = others[3, m] - d, others[4, m] - e, others[5, m] - f
-            cost = fixed_value + (u * u + v * v + w * w + x * x + y * y + z * z)
-            values[m] = min(values[m], cost)
+            u, v = joint_cost(others[0, m] - a, True), joint_cost(others[1, m] - b, True)
+            w, x = joint_cost(others[2, m] - c, True), joint_cost(others[3, m] - d, True)
+            y, z = joint_cost(others[4, m] - e, True), joint_cost(others[5, m] - f, True)
+            values[m] = min(values[m], fixed_value + (u + v + w + x + y + z))
     else:
         for m in range(first, last):
-            u, v, w = abs(others[0, m] - a), abs(others[1, m] - b), abs(others[2, m] - c)
-            x, y, z = abs(others[3, m] - d), abs(others[4, m] - e), abs(others[5, m] - f)
+            u, v = joint_cost(others[0, m] - a, False), joint_cost(others[1, m] - b, False)
+            w, x = joint_cost(others[2, m] - c, False), joint_cost(others[3, m] - d, False)
+            y, z = joint_cost(others[4, m] - e, False), joint_cost(others[5, m] - f, False)
             values[m] = min(values[m], fixed_value + (u + v + w + x + y + z))
 
 
@@ -99,6 +101,5 @@ def chain_effort(start, thinning, standby, chain, squared):
     for k in range(len(chain)):
         for i in range(6):
             before = start[i, 0] if k == 0 else standby[i, chain[k - 1]]
-            change = abs(thinning[i, chain[k]] - before)
-            total += change * change if squared else change
+            total += joint_cost(thinning[i, chain[k]] - before, squared)
     return total

@@ -15,16 +15,22 @@ import math
 import numpy as np
 
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 from solver.sequencing.batch import arc_postures
 from solver.sequencing.tolerances import (
+    CHAIN_DAMPING,
+    CHAIN_DAMPING_RELATIVE,
     CHAIN_GAIN_RELATIVE,
+    CHAIN_HALVINGS,
     CHAIN_MU_FACTOR,
     CHAIN_MU_LEAST,
     CHAIN_NEWTON_STEPS,
     CHAIN_REACH_RAD,
+    CHAIN_ROUNDING_RELATIVE,
     CHAIN_ROUNDS,
     CHAIN_STENCIL_RAD,
     CHAIN_STILL_RAD,
+    CHAIN_WORTH_MU,
 )
 
 
@@ -93,8 +99,8 @@ def _stage_efforts(batch, arcs, angles, stages):
     for k in range(n):
         stages[k] = 0.0
         for i in range(6):
-            change = abs(thinning[i, k] - (standby[i, k - 1] if k > 0 else batch.start[i]))
-            stages[k] += change * change if batch.squared else change
+            before = standby[i, k - 1] if k > 0 else batch.start[i]
+            stages[k] += joint_cost(thinning[i, k] - before, batch.squared)
 
 
 @kernel
@@ -208,12 +214,12 @@ def _newton_step(thinning, before, x, dual, low, high, squared, mu):
             slope[k], middle[k], beside[k] = 0.0, 1.0, 0.0
             if k + 1 < n:
                 beside[k + 1] = 0.0
-        middle[k] = middle[k] * (1 + 1e-12) + 1e-9
+        middle[k] = middle[k] * (1 + CHAIN_DAMPING_RELATIVE) + CHAIN_DAMPING
     _solve_tridiagonal(middle, beside, slope)
     stages = np.empty(n)
     at_first = _model_efforts(thinning, before, x, squared, mu, stages)
     share = 1.0
-    for _ in range(20):
+    for _ in range(CHAIN_HALVINGS):
         tried = np.minimum(np.maximum(x - share * slope, low), high)
         after = _model_efforts(thinning, before, tried, squared, mu, stages)
         if after < at_first:
@@ -225,7 +231,8 @@ def _newton_step(thinning, before, x, dual, low, high, squared, mu):
                     moved = firsts[i, k] + seconds[i, k] * moved
                     dual[i, k] = min(max(moved, -1.0), 1.0)
             x[:] = tried
-            return at_first - after > (1e-13 * at_first if squared else 0.1 * mu)
+            worth = CHAIN_ROUNDING_RELATIVE * at_first if squared else CHAIN_WORTH_MU * mu
+            return at_first - after > worth
         share /= 2
     return False
 

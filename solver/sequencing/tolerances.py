@@ -23,16 +23,34 @@ CHAIN_MU_LEAST: Final = 1e-11
 """Width within which the l1 norm is rounded off at the end [rad]."""
 
 CHAIN_MU_FACTOR: Final = 0.3
-"""From one width to the next."""
+"""Factor from one width to the next."""
 
 CHAIN_NEWTON_STEPS: Final = 6
 """Newton steps for one width at most."""
 
+CHAIN_HALVINGS: Final = 20
+"""How often such a step is halved before it is given up: a millionth of it."""
+
+CHAIN_DAMPING_RELATIVE: Final = 1e-12
+"""What is added to the curvature of each angle, as a share of it: more than rounding takes away in
+the elimination, so that pivots stay positive."""
+
+CHAIN_DAMPING: Final = 1e-9
+"""What is added besides [effort / rad2]: an angle that no joint's travel depends on has none."""
+
+CHAIN_ROUNDING_RELATIVE: Final = 1e-13
+"""A Newton step that lowers the model's effort by less, relative, was the last with l2: the rest is
+rounding."""
+
+CHAIN_WORTH_MU: Final = 0.1
+"""With l1 the same as a share of the width: what rounding the norm off changes by more."""
+
 ANNEAL_HOT: Final = 0.3
-"""Temperature at the start of the search for an order, in efforts of a target on average."""
+"""Temperature at the start of the search for an order, as a share of the mean effort of a target: a
+move that costs that much is accepted every third time."""
 
 ANNEAL_COLD: Final = 0.005
-"""Temperature at its end."""
+"""Temperature at its end, the same share: hardly a move that costs anything is accepted."""
 
 ANNEAL_WINDOW: Final = 3
 """Places on each side of a change whose approaches are chosen anew."""
@@ -50,6 +68,12 @@ end, for the same time, with dearer orders."""
 ANNEAL_NEIGHBOURS: Final = 12
 """Targets cheap to reach a target from, behind one of which a run is moved that begins with it."""
 
+ANNEAL_COOLED_TRIALS: Final = 64
+"""Moves between two temperatures, so that not every move pays for a power."""
+
+ANNEAL_TURN_SHARE: Final = 0.25
+"""Share of the moves that turn a run about where it is."""
+
 ANNEAL_TRIALS: Final = 10_000
 """Moves tried for each target when an order is searched, about 1 us each."""
 
@@ -58,6 +82,10 @@ EXACT_TARGETS: Final = 8
 
 EXACT_STEP_RAD: Final = 0.0525
 """Distance of the approach angles when it is [rad]."""
+
+EXACT_OPEN: Final = 64
+"""Partial orders that may be open for each order kept and each target, which bounds the memory:
+they are opened best first, with exact bounds."""
 
 EXACT_ORDERS_KEPT: Final = 24
 """Orders, cheapest on those angles, whose approaches are refined before one is taken."""

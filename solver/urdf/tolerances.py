@@ -15,3 +15,11 @@ CONVERTED_POSTURES: Final = 100
 
 URDF_DIGITS: Final = 4
 """Digits after the point from which an angle counts as a rounded one: 1.5708 is a right angle."""
+
+URDF_DIGIT_SHARE: Final = 0.51
+"""Share of its last digit by which a rounded angle is off at most: half of it, and the rounding of
+the comparison."""
+
+URDF_SHORTEST_M: Final = 1e-3
+"""Length from which the cylinders' radius is taken at least [m]: an arm whose links have no length
+would be out of sight."""

@@ -14,6 +14,7 @@ import numpy as np
 from solver.kinematics.dynamics import link_tensor
 from solver.robots.model import REVOLUTE, Array, Joint, Link, Robot, Tool
 from solver.robots.rigid import link_transform, roll_pitch_yaw, transform
+from solver.urdf.tolerances import URDF_SHORTEST_M
 
 BASE_LINK: Final = "base_link"
 TIP_LINK: Final = "tool_centre_point"
@@ -30,7 +31,7 @@ def robot_to_urdf(robot: Robot, tool: Tool) -> bytes:
     """
     root = ET.Element("robot", name=robot.name)
     lengths = [max(abs(j.a_m), abs(j.d_m)) for j in robot.joints]
-    radius = _THICKNESS * max(*lengths, tool.length_m, 1e-3)
+    radius = _THICKNESS * max(*lengths, tool.length_m, URDF_SHORTEST_M)
     parent, origin = _link(root, BASE_LINK), robot.mount
     _cylinder(parent, np.zeros(3), origin[:3, 3], radius)
     parent_name = BASE_LINK

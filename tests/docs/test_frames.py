@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from app.store.frames import MOST_FRAMES
-from solver.frames import point_pairs, registration
+from solver.frames import tolerances
 from tests.app.conftest import Server, running_server
 from tests.docs.test_documents import ROOT, fences, rows
 
@@ -68,10 +68,10 @@ def test_warnings_are_documented() -> None:
 
 def test_limits_are_those_of_the_code() -> None:
     text = " ".join(Path(ROOT / DOCUMENT).read_text(encoding="utf-8").split())
-    assert f"more than {point_pairs.MOST_PAIRS:,}" in text
-    assert f"less than {100 * point_pairs.COLLINEAR:g} % of their spread" in text
-    assert f"or within {1000 * point_pairs.SAME_PLACE_M:g} mm" in text
+    assert f"more than {tolerances.MOST_PAIRS:,}" in text
+    assert f"less than {100 * tolerances.COLLINEAR:g} % of their spread" in text
+    assert f"or within {1000 * tolerances.SAME_PLACE_M:g} mm" in text
     assert f"{MOST_FRAMES:,} are kept" in text
-    assert f"more than {1000 * registration.LARGE_RESIDUAL_M:g} mm off" in text
-    assert f"known to {registration.MOST_ROTATION_STD_RAD:g} rad only" in text
-    assert f"known to {1000 * registration.POOR_ROTATION_STD_RAD:g} mrad only" in text
+    assert f"more than {1000 * tolerances.LARGE_RESIDUAL_M:g} mm off" in text
+    assert f"known to {tolerances.MOST_ROTATION_STD_RAD:g} rad only" in text
+    assert f"known to {1000 * tolerances.POOR_ROTATION_STD_RAD:g} mrad only" in text

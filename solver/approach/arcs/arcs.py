@@ -1,12 +1,13 @@
 """Feasible arcs of the approach angle, and effort along them, for methods and pictures."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from solver.approach.arcs.many import arcs_of_many
-from solver.approach.arcs.search import WHOLE_TURN
+from solver.approach.task.constraints import Constraint
 from solver.approach.task.feasibility import sample
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.approach.tolerances import ARC_SAMPLES
@@ -63,15 +64,22 @@ def task_arcs(task: ApproachTask) -> tuple[Arc, ...]:
     return robust_arcs(task, arcs)
 
 
+_LIMITS: Final[Mapping[Constraint, str]] = {
+    Constraint.REACH: "reach",
+    Constraint.BESIDE: "reach",
+    Constraint.JUMP: "wrist_jump",
+}
+
+
 def limit_names(robot: Robot) -> tuple[str, ...]:
     """Names of the constraints that end arcs, in the order of the kernels."""
-    return (*robot.joint_names, "reach", "reach", "wrist_jump")
+    return (*robot.joint_names, *(_LIMITS[one] for one in sorted(_LIMITS)))
 
 
 def named_arc(tool_side: int, arc: Sequence[float], names: Sequence[str]) -> Arc:
     """An arc from the kernels' columns: branch, ends [rad] and what ends it."""
     branch, low, high, *codes = arc
-    ends = (None if code == WHOLE_TURN else names[int(code)] for code in codes)
+    ends = (None if code == Constraint.NONE else names[int(code)] for code in codes)
     return Arc(tool_side, int(branch), low, high, *ends)
 
 

@@ -9,6 +9,7 @@ straight wrist or the waist's axis, and does not enter the arm's reach, where it
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
 import math
+from enum import IntEnum
 from typing import Final
 
 from solver.approach.arcs.tolerances import (
@@ -18,10 +19,7 @@ from solver.approach.arcs.tolerances import (
     STEEPEST_JUMP,
 )
 from solver.approach.arcs.turns import (
-    BESIDE,
     JOINT_OF_ROW,
-    JUMP,
-    REACH,
     ROW_CONSTRAINTS,
     WRIST_ROWS,
     jump_margin,
@@ -30,6 +28,7 @@ from solver.approach.arcs.turns import (
     row_margin,
     swings,
 )
+from solver.approach.task.constraints import BESIDE, JUMP, REACH
 from solver.approach.task.packed import COS_HALF
 from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
 from solver.compiled import inlined, kernel
@@ -37,13 +36,19 @@ from solver.compiled import inlined, kernel
 ARC_NODES: Final = ARC_CELLS + 3
 """Ends of all cells, and a node beyond at each side."""
 
-DEAD: Final = 0
-FULL: Final = 1
-CROSSED: Final = 2
-EXTREME: Final = 3
-EDGE: Final = 4
-"""States of a cell: no angle is feasible; all are; constraints change sign; one may have an
-extremum across zero, or a joint swings; the arm enters its reach."""
+
+class CellState(IntEnum):
+    """What a cell holds: no feasible angle, or feasible angles only, or what has to be looked at.
+
+    CROSSED: constraints change sign. EXTREME: one may have an extremum across zero, or a joint
+    swings. EDGE: the arm enters its reach.
+    """
+
+    DEAD = 0
+    FULL = 1
+    CROSSED = 2
+    EXTREME = 3
+    EDGE = 4
 
 
 @inlined
@@ -164,16 +169,16 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
                 continue
             before = row_margin(task, outer, n, wrist, i)
             if peak_above(before, a, b, row_margin(task, beyond, n, wrist, i)) < 0.0:
-                return DEAD, -1, 0
+                return CellState.DEAD, -1, 0
     if min(left_margins[REACH], right_margins[REACH]) < 0.0 or (
         min(left_margins[BESIDE], right_margins[BESIDE]) < 0.0
     ):
         for n in range(rows):
             if enters_reach(left, n, right, n):
-                return EDGE, -1, 0
+                return CellState.EDGE, -1, 0
     if swings(left, right, rows, CELL_SWING_COSINE):
-        return EXTREME, -1, 0
-    state, extreme, at_row = FULL, -1, 0
+        return CellState.EXTREME, -1, 0
+    state, extreme, at_row = CellState.FULL, -1, 0
     for i in range(JUMP):
         clear = min(left_margins[i], right_margins[i])
         # Between ends that far inside only a joint that may turn all but freely can get outside.
@@ -183,7 +188,7 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
         for n in range(rows):
             a, b = row_margin(task, left, n, wrist, i), row_margin(task, right, n, wrist, i)
             if (a < 0.0) != (b < 0.0):
-                state = CROSSED
+                state = CellState.CROSSED
                 continue
             if a >= 0.0 and clear >= CLEAR_MARGIN:
                 if passes_behind(task, left, n, right, n, wrist, i):
@@ -203,11 +208,11 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
     if a < 0.0 and b < 0.0:
         # The smallest of many rows' margins has corners, so that slopes tell little of it.
         if width > NARROW_JUMP_RAD and max(a, b) > -STEEPEST_JUMP * width:
-            return EXTREME, -1, 0
+            return CellState.EXTREME, -1, 0
         before, after = jump_margin(task, outer, wrist), jump_margin(task, beyond, wrist)
         if peak_above(before, a, b, after) < 0.0:
-            return DEAD, -1, 0
+            return CellState.DEAD, -1, 0
         extreme, at_row = JUMP, 0
     elif (a < 0.0) != (b < 0.0):
-        state = CROSSED
-    return (EXTREME, extreme, at_row) if extreme >= 0 else (state, -1, 0)
+        state = CellState.CROSSED
+    return (CellState.EXTREME, extreme, at_row) if extreme >= 0 else (state, -1, 0)

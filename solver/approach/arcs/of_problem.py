@@ -1,7 +1,5 @@
 """The feasible arcs of every target of a problem."""
 
-import numpy as np
-
 from solver.approach.arcs.arcs import limit_names, named_arc
 from solver.approach.arcs.many import arcs_of_many
 from solver.approach.task.packed import jump_cosines
@@ -9,6 +7,7 @@ from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.approach.uncertainty.robustness import robust_arcs
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array
@@ -27,8 +26,7 @@ def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
 
 def arcs_of_packed(problem: Problem, numbers: Array) -> dict[str, tuple[Arc, ...]]:
     """`feasible_arcs` for targets that are packed already."""
-    targets, options = problem.targets, problem.options
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    targets, retreats = problem.targets, even_retreats(problem.options)
     table = arcs_of_many(numbers, retreats, jump_cosines(retreats))
     found: dict[str, list[Arc]] = {target.id: [] for target in targets}
     names = limit_names(problem.robot)

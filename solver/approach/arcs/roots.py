@@ -8,10 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.approach.arcs.cells import ARC_NODES
-from solver.approach.arcs.tolerances import ARC_END_RAD, EXTREME_ANGLE_RAD
+from solver.approach.arcs.tolerances import (
+    ARC_END_RAD,
+    EXTREME_ANGLE_RAD,
+    PULL_IN_STEPS,
+    ROOT_STEPS,
+)
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
-    JUMP,
     ROW_CONSTRAINTS,
     TURN_ROWS,
     jump_margin,
@@ -21,6 +25,7 @@ from solver.approach.arcs.turns import (
     turns_along_path,
     write_turns,
 )
+from solver.approach.task.constraints import JUMP
 from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import kernel
 from solver.robots.model import Array
@@ -115,7 +120,7 @@ def root(task, scratch, arm, wrist, i, row, broken, f_broken, met, f_met):
     """
     x1, f1, x2, f2 = broken, f_broken, met, f_met
     kept, t = met, f1 / (f1 - f2)
-    for _ in range(100):
+    for _ in range(ROOT_STEPS):
         x3 = x1 + t * (x2 - x1)
         f3 = single_margin(task, scratch, x3, row, arm, wrist, i)
         if (f3 >= 0.0) == (f1 >= 0.0):
@@ -167,7 +172,7 @@ def pull_in(
     angle, by = start, JUMP
     turns, margins = at_start, start_margins
     inwards = 1.0 if end > start else -1.0
-    for _ in range(8 * CONSTRAINTS):
+    for _ in range(PULL_IN_STEPS * CONSTRAINTS):
         worst, row, least = worst_constraint(task, turns, wrist, first, last, margins)
         if worst < 0:
             return angle, by, True

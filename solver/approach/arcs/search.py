@@ -17,33 +17,27 @@ import numpy as np
 
 from solver.approach.arcs.cells import (
     ARC_NODES,
-    CROSSED,
-    DEAD,
-    EDGE,
-    EXTREME,
-    FULL,
+    CellState,
     any_cell_reached,
     close_cells,
     path_state,
 )
 from solver.approach.arcs.roots import ARMS, extreme_margin, tighten
-from solver.approach.arcs.tolerances import EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
+from solver.approach.arcs.tolerances import CELL_STACK, EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
-    JUMP,
-    REACH,
     path_margins,
     reaches_at_angles,
     row_margin,
     turns_along_path,
     write_turns,
 )
+from solver.approach.task.constraints import JUMP, REACH, WHOLE_TURN
 from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import kernel
 
 MOST_ARCS = 64
 ARC_COLUMNS = 5
-WHOLE_TURN = -1
 """Columns of an arc: branch, lower and upper angle [rad], the constraint that ends it at each
 (WHOLE_TURN where none does)."""
 
@@ -127,18 +121,18 @@ def cell_pieces(task, scratch, arm, wrist, k, arcs, start, count):
         task, wrist, _STEP, paths[outer], at_left, at_right, paths[beyond], left, right
     )
     low, high = _ANGLES[k], _ANGLES[k + 1]
-    if state == DEAD:
+    if state == CellState.DEAD:
         return count
-    if state == FULL:
+    if state == CellState.FULL:
         return append_arc(arcs, start, count, arm, wrist, low, high, JUMP, JUMP)
-    if state in (EDGE, CROSSED):
-        first, end = (REACH, JUMP) if state == EDGE else (0, CONSTRAINTS)
+    if state in (CellState.EDGE, CellState.CROSSED):
+        first, end = (REACH, JUMP) if state == CellState.EDGE else (0, CONSTRAINTS)
         clean, a, b, by_a, by_b = tighten(
             task, scratch, arm, wrist, first, end, low, high, at_left, at_right, left, right
         )
         if clean and a >= b:
             return count
-        if clean and state == CROSSED:
+        if clean and state == CellState.CROSSED:
             return append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
         if clean:
             return settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count)
@@ -182,7 +176,7 @@ def push(stack, top, low, high, by_low, by_high):
 @kernel
 def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count):
     """Appends the feasible pieces of a cell that has to be split; returns the new count."""
-    stack = np.empty((64, 4))
+    stack = np.empty((CELL_STACK, 4))
     push(stack, 0, low, high, by_low, by_high)
     top = 1
     paths, margins = scratch.cell_paths, scratch.cell_margins
@@ -199,13 +193,13 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
             task, wrist, width, paths[0], paths[1], paths[2], paths[3], margins[0], margins[1]
         )
         middle = (a + b) / 2
-        if state == DEAD:
+        if state == CellState.DEAD:
             continue
-        if state == FULL:
+        if state == CellState.FULL:
             count = append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
             continue
-        if state in (CROSSED, EDGE):
-            first, end = (REACH, JUMP) if state == EDGE else (0, CONSTRAINTS)
+        if state in (CellState.CROSSED, CellState.EDGE):
+            first, end = (REACH, JUMP) if state == CellState.EDGE else (0, CONSTRAINTS)
             clean, c, d, by_c, by_d = tighten(
                 task, scratch, arm, wrist, first, end, a, b,
                 paths[1], paths[2], margins[0], margins[1],
@@ -213,7 +207,7 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
             by_c, by_d = by_a if c == a else by_c, by_b if d == b else by_d
             if clean and c >= d:
                 continue
-            if clean and state == CROSSED:
+            if clean and state == CellState.CROSSED:
                 count = append_arc(arcs, start, count, arm, wrist, c, d, by_c, by_d)
                 continue
             if clean and d - c < width:
@@ -222,7 +216,7 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
                 continue
         if width < NARROWEST_CELL_RAD or top + 2 > len(stack):
             continue  # a straight wrist, where no angle keeps its branch
-        if state == EXTREME and i >= 0:
+        if state == CellState.EXTREME and i >= 0:
             sign = 1.0
             if i != JUMP and row_margin(task, paths[1], row, wrist, i) >= 0.0:
                 sign = -1.0

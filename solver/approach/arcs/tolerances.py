@@ -7,7 +7,7 @@ ARC_END_RAD: Final = 1e-15
 reach joints turn with the square root of the angle: 1e-12 would leave 1e-6 of the effort there."""
 
 CLEAR_MARGIN: Final = 0.1
-"""Margin (a difference of cosines, or metres) at both ends of a cell above which a joint is not
+"""Margin [difference of cosines, or m] at both ends of a cell above which a joint is not
 looked at in each row: it would have to turn back within 5 degrees of approach angle."""
 
 ROUND_TURN_COSINE: Final = -0.6
@@ -26,3 +26,13 @@ NARROWEST_CELL_RAD: Final = 1e-6
 
 EXTREME_ANGLE_RAD: Final = 1e-7
 """Width to which an extremum of a margin is bracketed [rad]; the value is then good to 1e-14."""
+
+ROOT_STEPS: Final = 100
+"""Steps of a root search at most; bisection alone would take some fifty."""
+
+PULL_IN_STEPS: Final = 8
+"""How often each constraint, on average, may be the one that ends a part of a cell before the cell
+is taken for one that does not behave."""
+
+CELL_STACK: Final = 64
+"""Parts of a cell that wait to be looked at, at most: each halving adds one."""

@@ -9,6 +9,7 @@ way round so that loops over n are vectorised: 15 ns a posture instead of 150.
 
 import math
 
+from solver.approach.task.constraints import BESIDE, JUMP, REACH
 from solver.approach.task.packed import (
     COS_HALF,
     COS_MIDDLE,
@@ -23,10 +24,8 @@ from solver.kinematics.spherical_wrist import arm_turns, elbow_turns, wrist_turn
 from solver.tolerances import SINGULAR_WRIST
 
 TURN_ROWS = 14
-REACH = 6
-BESIDE = 7
-JUMP = 8
-CONSTRAINTS = 9
+
+CONSTRAINTS = JUMP + 1
 """Margins of one branch: six joints (cosine form), the reach [m], the shoulder's offset beside the
 waist's axis [m], the wrist jump (cosine form)."""
 

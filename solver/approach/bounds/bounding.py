@@ -17,15 +17,14 @@ from solver.approach.bounds.intervals import (
     square,
     subtract,
 )
-from solver.approach.bounds.tolerances import CERTIFICATE_PIECES
+from solver.approach.bounds.tolerances import CERTIFICATE_PIECES, SUM_STEPS
 from solver.approach.task.feasibility import effort, limit_margin, posture, tool_axes, trace
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, REACH_ROUNDING_M
 
 _TURN = 2 * math.pi
 _HALF_TURN_ABOVE = math.nextafter(math.pi, 4.0)
-# A sum of six products of numbers that are not negative rounds by fewer.
-_SUM_STEPS = 16.0
 
 
 @kernel
@@ -102,8 +101,8 @@ def least_effort_in_cell(task, half, turns, q, slopes, middle):
     for i in range(6):
         weight = task.weights[i]
         turn, least, certain = nearest_turn(task, i, q[i, 0], q[i, 1], turns[i, 0], turns[i, 1])
-        cost = weight * (least * least if task.squared else least)
-        least_cost = outward(cost, cost, _SUM_STEPS)[0]
+        cost = weight * joint_cost(least, task.squared)
+        least_cost = outward(cost, cost, SUM_STEPS)[0]
         plain += least_cost
         if q[i, 1] - q[i, 0] >= math.pi or middle[i, 1] - middle[i, 0] >= math.pi or not certain:
             value = add(value, (least_cost, least_cost))
@@ -131,7 +130,7 @@ def least_effort_in_cell(task, half, turns, q, slopes, middle):
             value = add(value, scale(factor, (change[i, 0], change[i, 1])))
             slope = add(slope, scale(factor, (slopes[i, 0], slopes[i, 1])))
     line = subtract(value, scale(half, (0.0, max(abs(slope[0]), abs(slope[1])))))[0]
-    return max(outward(plain, plain, _SUM_STEPS)[0], line, 0.0)
+    return max(outward(plain, plain, SUM_STEPS)[0], line, 0.0)
 
 
 @kernel

@@ -2,12 +2,10 @@
 
 An interval is a tuple (low, high); a jet is a tuple of two intervals, (value, slope), that enclose
 a function of the approach angle and its derivative over a cell of angles. A result is moved outward
-by more than its rounding error: `_STEP` of itself for the four operations and the square root,
-which IEEE 754 rounds to the nearest number, `_LIBRARY_STEPS` times that for sin, cos, acos and
-atan2, which the C library keeps within one or two.
+by more than its rounding error: ROUNDING_STEP of itself for the four operations and the square
+root, which IEEE 754 rounds to the nearest number, LIBRARY_STEPS times that for sin, cos, acos and
+atan2. A slope that has no bound is STEEPEST_SLOPE long.
 
-A slope that has no bound is `_STEEP` long. Angles where the true slope is larger still are those
-within 1e-60 of the root of a square root, over which it adds nothing that a double can hold.
 Source: R. E. Moore, Interval Analysis, 1966, chapters 4 and 6.
 """
 
@@ -15,13 +13,15 @@ Source: R. E. Moore, Interval Analysis, 1966, chapters 4 and 6.
 
 import math
 
-from solver.approach.bounds.tolerances import ANGLE_ROUNDING_RAD
+from solver.approach.bounds.tolerances import (
+    ANGLE_ROUNDING_RAD,
+    LEAST_WIDTH,
+    LIBRARY_STEPS,
+    ROUNDING_STEP,
+    STEEPEST_SLOPE,
+)
 from solver.compiled import kernel
 
-_STEP = 2.0**-52
-_LIBRARY_STEPS = 4.0
-_LEAST = 1e-300
-_STEEP = 1e30
 _TURN = 2.0 * math.pi
 WHOLE = (-1e3, 1e3)
 """An angle of which nothing is known: longer than a turn, whatever is added to it."""
@@ -31,8 +31,8 @@ WHOLE = (-1e3, 1e3)
 def outward(low, high, steps=1.0):
     """The interval with both ends moved outward by `steps` relative rounding steps."""
     return (
-        low - (steps * _STEP * abs(low) + _LEAST),
-        high + (steps * _STEP * abs(high) + _LEAST),
+        low - (steps * ROUNDING_STEP * abs(low) + LEAST_WIDTH),
+        high + (steps * ROUNDING_STEP * abs(high) + LEAST_WIDTH),
     )
 
 
@@ -80,10 +80,10 @@ def root(a):
 @kernel
 def over_positive(a, b):
     """Quotient a / b for b > 0, unbounded where b may be all but 0."""
-    if b[0] < _LEAST:
-        return -_STEEP, _STEEP
+    if b[0] < LEAST_WIDTH:
+        return -STEEPEST_SLOPE, STEEPEST_SLOPE
     low, high = multiply(a, outward(1.0 / b[1], 1.0 / b[0]))
-    return max(low, -_STEEP), min(high, _STEEP)
+    return max(low, -STEEPEST_SLOPE), min(high, STEEPEST_SLOPE)
 
 
 @kernel
@@ -92,7 +92,7 @@ def cosine(a):
     if a[1] - a[0] >= _TURN:
         return -1.0, 1.0
     first, last = math.cos(a[0]), math.cos(a[1])
-    low, high = outward(min(first, last), max(first, last), _LIBRARY_STEPS)
+    low, high = outward(min(first, last), max(first, last), LIBRARY_STEPS)
     if math.floor(a[1] / _TURN) > math.floor(a[0] / _TURN):
         high = 1.0
     if math.floor(a[1] / _TURN - 0.5) > math.floor(a[0] / _TURN - 0.5):
@@ -177,7 +177,7 @@ def j_sine(a):
 def j_arc_cosine(a):
     """Arc cosine over the part of a jet inside -1 to 1."""
     low, high = max(min(a[0][0], 1.0), -1.0), max(min(a[0][1], 1.0), -1.0)
-    value = outward(math.acos(high), math.acos(low), _LIBRARY_STEPS)
+    value = outward(math.acos(high), math.acos(low), LIBRARY_STEPS)
     sine_squared = multiply(subtract((1.0, 1.0), (low, high)), add((1.0, 1.0), (low, high)))
     closest = subtract((1.0, 1.0), square((low, high)))
     # Each encloses 1 - a^2: the first is exact near its roots, the second not too wide elsewhere.
@@ -193,7 +193,7 @@ def j_arc_tangent(y, x):
     A box without the origin is seen from it under less than half a turn, between two corners.
     """
     if y[0][0] <= 0.0 <= y[0][1] and x[0][0] <= 0.0 <= x[0][1]:
-        return WHOLE, (-_STEEP, _STEEP)
+        return WHOLE, (-STEEPEST_SLOPE, STEEPEST_SLOPE)
     middle = math.atan2(y[0][0] + y[0][1], x[0][0] + x[0][1])
     low, high = 0.0, 0.0
     for corner_y in y[0]:
@@ -202,7 +202,7 @@ def j_arc_tangent(y, x):
             turned -= _TURN * math.floor(turned / _TURN + 0.5)
             low, high = min(low, turned), max(high, turned)
     # The steps are of pi: the corner's and the middle's angles have errors of their own size.
-    slack = 2.0 * _LIBRARY_STEPS * _STEP * math.pi
+    slack = 2.0 * LIBRARY_STEPS * ROUNDING_STEP * math.pi
     value = outward(middle + low - slack, middle + high + slack)
     across = subtract(multiply(x[0], y[1]), multiply(y[0], x[1]))
     return value, over_positive(across, add(square(x[0]), square(y[0])))

@@ -13,8 +13,8 @@ CERTIFICATE_PIECES: Final = 16
 """Cells that one turn of one branch starts with."""
 
 ENCLOSURE_ROUNDING: Final = 2e-15
-"""Rounding of the closed form in direction cosines, by which enclosures are widened: some ten
-operations on numbers near one, at 1.1e-16 each."""
+"""Rounding of the closed form, relative to direction cosines of one, by which enclosures are
+widened: some ten operations on numbers near one, at 1.1e-16 each."""
 
 ANGLE_ROUNDING_RAD: Final = 1e-14
 """Rounding of sums of a few angles of up to two turns, by which enclosures are widened [rad]."""
@@ -22,3 +22,22 @@ ANGLE_ROUNDING_RAD: Final = 1e-14
 ENCLOSURE_SINGULAR_WRIST: Final = 1e-9
 """sin(q5) below which nothing is taken for known of q4 and q6: where the closed form sets q4 to
 zero (SINGULAR_WRIST), and ten times as far."""
+
+ROUNDING_STEP: Final = 2.0**-52
+"""Relative step by which a result is moved outward; IEEE 754 rounds to half of it."""
+
+LIBRARY_STEPS: Final = 4.0
+"""How many times that for sin, cos, acos and atan2, which the C library keeps within one or two."""
+
+SUM_STEPS: Final = 16.0
+"""How many times that for a sum of six products of numbers that are not negative; it rounds by
+fewer."""
+
+LEAST_WIDTH: Final = 1e-300
+"""What every result is moved outward by besides, in its own unit [any]: next to zero a relative
+step is nothing."""
+
+STEEPEST_SLOPE: Final = 1e30
+"""Slope that stands for one without a bound [unit / rad]. Angles where the true slope is larger
+still are those within 1e-60 of the root of a square root, over which it adds nothing that a double
+can hold."""

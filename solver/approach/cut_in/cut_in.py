@@ -18,6 +18,7 @@ from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.motion.timing import TimedRows, time_cut_in
 from solver.problem.options import Options
+from solver.problem.retreats import even_retreats
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import (
@@ -129,7 +130,7 @@ def refined_rows(
     count = max(len(path), LEAST_REFINED_ROWS)
     for _ in range(TRAJECTORY_HALVINGS + 1):
         if count > len(path):
-            retreats = np.linspace(options.standoff_m, 0.0, count)
+            retreats = even_retreats(options, count)
             rows = retreat_rows(robot, tool, path[-1], branch, retreats)
         deviation = line_deviation(robot, tool, rows, *line)
         if deviation <= options.straightness_m:

@@ -13,6 +13,7 @@ from solver.approach.numerical.tolerances import (
     NUMERICAL_PULL_STEPS,
     NUMERICAL_REACH_STEPS,
     NUMERICAL_REACHED,
+    NUMERICAL_TURNS,
 )
 from solver.approach.task.feasibility import tool_axes
 from solver.compiled import kernel
@@ -106,7 +107,7 @@ def nearest_turn(chain, family, q):
     """Brings revolute joints, in place, to the turn nearest to the reference inside the limits."""
     for i in range(len(q)):
         if chain.turning[i] > 0.0:
-            for turns in range(-4, 5):
+            for turns in range(-NUMERICAL_TURNS, NUMERICAL_TURNS + 1):
                 other = q[i] + 2 * math.pi * turns
                 inside = family.lower[i] <= other <= family.upper[i]
                 if inside and abs(other - family.reference[i]) < abs(q[i] - family.reference[i]):

@@ -21,3 +21,7 @@ NUMERICAL_MOST_STEP: Final = 0.5
 
 NUMERICAL_REACHED: Final = 1e-3
 """Error [m and rad] below which a start has come to the target and is polished."""
+
+NUMERICAL_TURNS: Final = 4
+"""Whole turns to either side on which a joint is tried nearer to the reference: more than the
+limits of any arm here allow."""

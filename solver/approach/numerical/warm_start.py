@@ -17,6 +17,7 @@ from solver.kinematics.numerical import (
     polish,
     postures_behind,
 )
+from solver.problem.effort import joint_costs
 from solver.problem.solution import Reason
 from solver.robots.model import Array, Robot, Tool
 from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_POSTURE_RAD
@@ -162,9 +163,8 @@ def _inside(task: ApproachTask, rows: Array) -> Array:
 
 
 def _efforts(task: ApproachTask, postures: Array) -> Array:
-    change = np.abs(postures - np.asarray(task.reference))
-    travel = change**2 if task.options.norm == "l2" else change
-    return np.asarray(travel @ np.asarray(task.joint_weights))
+    costs = joint_costs(postures - np.asarray(task.reference), task.options.norm)
+    return np.asarray(costs @ np.asarray(task.joint_weights))
 
 
 def _cut_in_holds(task: ApproachTask, rows: Array, stages: _Stages) -> bool:

@@ -11,6 +11,7 @@ from solver.approach.task.packed import jump_cosines
 from solver.approach.task.packing import packed_targets
 from solver.approach.tolerances import EXCHANGE_DENSITY
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.tolerances import BATCH_PART
@@ -48,8 +49,7 @@ def closed_form_optima(
         directions: branch directions of any length, shape (n, 3).
         references: postures from which effort counts, shape (n, 6) or (6,) [rad].
     """
-    options = problem.options
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    retreats = even_retreats(problem.options)
     n = len(positions)
     found = (
         np.empty(n),
@@ -85,10 +85,9 @@ def chosen_paths(
     problem: Problem, numbers: Array, arcs: Sequence[Arc], angles_rad: Array
 ) -> ChosenPaths:
     """The cut-ins of n packed targets, each on an arc of its own at an angle, shape (n,) [rad]."""
-    options = problem.options
     sides = np.array([(1 - arc.tool_side) // 2 for arc in arcs])
     branches = np.array([arc.branch for arc in arcs])
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    retreats = even_retreats(problem.options)
     n = len(arcs)
     joints, suspicious = np.empty((n, len(retreats), 6)), np.empty(n, dtype=np.bool_)
     own = np.ascontiguousarray(numbers[sides, np.arange(n)])
@@ -113,7 +112,7 @@ def finer_paths(
     )
     own = np.ascontiguousarray(numbers[(1 - optima.tool_sides[which]) // 2, np.arange(len(which))])
     rows = (options.path_points - 1) * EXCHANGE_DENSITY + 1
-    retreats = np.linspace(options.standoff_m, 0.0, rows)
+    retreats = even_retreats(options, rows)
     joints, suspicious = np.empty((len(which), rows, 6)), np.empty(len(which), dtype=np.bool_)
     paths_of_many(
         own,

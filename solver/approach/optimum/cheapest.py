@@ -14,13 +14,15 @@ import numpy as np
 from solver.approach.arcs.cells import enters_reach
 from solver.approach.arcs.roots import ARMS, ArcScratch, arc_scratch
 from solver.approach.arcs.search import ARC_COLUMNS, MOST_ARCS, cell_pieces, open_up
-from solver.approach.arcs.turns import BESIDE, REACH, wrist_sign
+from solver.approach.arcs.turns import wrist_sign
 from solver.approach.optimum.effort_samples import EffortScratch, effort_scratch
 from solver.approach.optimum.search import least_effort
+from solver.approach.task.constraints import BESIDE, REACH
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
 from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
 from solver.compiled import inlined, kernel
 from solver.kinematics.arctangent import atan2
+from solver.problem.effort import joint_cost
 from solver.robots.model import Array
 
 
@@ -146,6 +148,5 @@ def effort_at_least(task, turns, reference, wrist, k):
         sin = wrist_sign(wrist, i, False) * reference[i, 1]
         nearest = max(c[k + 1] * cos + s[k + 1] * sin, c[k + 2] * cos + s[k + 2] * sin)
         least = max(angle_of_cosine(nearest) - slack * beside, 0.0)
-        weight = task.numbers[WEIGHTS + i]
-        total += weight * (least * least if task.numbers[SQUARED] > 0.0 else least)
+        total += task.numbers[WEIGHTS + i] * joint_cost(least, task.numbers[SQUARED] > 0.0)
     return total

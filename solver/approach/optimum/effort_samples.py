@@ -19,6 +19,7 @@ from solver.approach.task.feasibility import choose_turns
 from solver.approach.task.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
+from solver.problem.effort import joint_cost
 from solver.robots.model import Array
 
 MOST_SAMPLES = 8 * math.ceil((2 * math.pi / EFFORT_CELL_RAD + 1) / 8)
@@ -94,8 +95,7 @@ def sample_effort(task, scratch, branch, count):
     for i in range(6):
         reference, weight = task.numbers[REFERENCE + i], task.numbers[WEIGHTS + i]
         for n in range(count):
-            change = abs(scratch.joints[i, n] - reference)
-            scratch.efforts[n] += weight * (change * change if squared else change)
+            scratch.efforts[n] += weight * joint_cost(scratch.joints[i, n] - reference, squared)
 
 
 @kernel

@@ -22,15 +22,20 @@ from solver.approach.optimum.effort_samples import (
 from solver.approach.optimum.tolerances import (
     EFFORT_CELL_RAD,
     EFFORT_SMOOTH_RAD,
+    EFFORT_STACK,
     EFFORT_SWING_RAD,
     FLAT_EFFORT,
+    KINK_ANGLE_RAD,
+    KINK_STEPS,
+    KINK_TRAVEL_RAD,
+    SLOPE_SHARE,
     SMOOTH_MINIMUM_RAD,
 )
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, PackedTask
 from solver.approach.tolerances import ANGLE_STEP_RAD, LEAST_EFFORT_CELLS
 from solver.compiled import kernel
+from solver.problem.effort import joint_cost
 
-_SLOPE_SHARE = 1e-5
 _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
 
 
@@ -52,9 +57,7 @@ def least_in_cell(task, joints, k, count):
         if k + 2 < count:
             beside = max(beside, abs(joints[i, k + 2] - joints[i, k + 1]))
         least = 0.0 if (a < 0.0) != (b < 0.0) else max(min(abs(a), abs(b)) - beside / 2, 0.0)
-        total += task.numbers[WEIGHTS + i] * (
-            least * least if task.numbers[SQUARED] > 0.0 else least
-        )
+        total += task.numbers[WEIGHTS + i] * joint_cost(least, task.numbers[SQUARED] > 0.0)
     return total
 
 
@@ -157,7 +160,7 @@ def least_effort(task, arc, cell, branch, low, high, low_cusp, high_cusp, best):
 @kernel
 def refine_cell(task, scratch, branch, low, high, best):
     """Angle and effort of the least effort between two angles, if below `best`."""
-    stack = np.empty((64, 2))
+    stack = np.empty((EFFORT_STACK, 2))
     stack[0, 0], stack[0, 1] = low, high
     top, angle = 1, math.nan
     bounds, ends = np.empty(8), np.empty((6, 2))
@@ -224,12 +227,12 @@ def kink(task, scratch, branch, joint, a, fa, b, fb):
     It is fa and fb from it at the angles a and b, on different sides.
     """
     c = a
-    for _ in range(60):
+    for _ in range(KINK_STEPS):
         if fa == fb:
             break
         c = b - fb * (b - a) / (fb - fa)
         fc = travel_at(task, scratch, branch, c, joint)
-        if abs(fc) <= ANGLE_STEP_RAD * 1e-3 or abs(b - a) <= ANGLE_STEP_RAD * 1e-2:
+        if abs(fc) <= KINK_TRAVEL_RAD or abs(b - a) <= KINK_ANGLE_RAD:
             break
         if (fc < 0.0) != (fb < 0.0):
             a, fa = b, fb
@@ -255,7 +258,7 @@ def smooth_minimum(task, scratch, branch, low, high):
     upper, and there by Brent's method: parabolas through the three lowest, golden section where
     they do not close in.
     """
-    h = (high - low) * _SLOPE_SHARE
+    h = (high - low) * SLOPE_SHARE
     scratch.angles[0], scratch.angles[1] = low, low + h
     scratch.angles[2], scratch.angles[3] = high - h, high
     sample_effort(task, scratch, branch, 4)

@@ -1,17 +1,12 @@
 """Kernels: the approach that comes closest to feasible, and what it fails at.
 
-A failure is a stage and a margin. The later stage is the closer one, then the larger margin:
-
-    0 the reach at thinning [m]     1 a joint's limit at thinning [rad]
-    2 the reach at standby [m]      3 a joint's limit at standby [rad]
-    4 the reach in the cut-in [m]   5 a joint's limit in the cut-in [rad]
-    6 a joint that jumps in the cut-in [rad, the travel allowed between two rows less the travel]
-    7 none: the approach is feasible
+A failure is a stage and a margin. The later stage is the closer one, then the larger margin.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
 import math
+from enum import IntEnum
 
 import numpy as np
 
@@ -21,7 +16,24 @@ from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import arm_turns, wrap
 from solver.tolerances import JOINT_RATE_RAD_M
 
-FEASIBLE = 7
+
+class Stage(IntEnum):
+    """What an approach fails at, in the order in which it is looked at, or nothing.
+
+    Margins are lengths [m] for the reach and angles [rad] for limits; for a jump the travel allowed
+    between two rows less the travel [rad].
+    """
+
+    REACH_AT_THINNING = 0
+    LIMIT_AT_THINNING = 1
+    REACH_AT_STANDBY = 2
+    LIMIT_AT_STANDBY = 3
+    REACH_IN_CUT_IN = 4
+    LIMIT_IN_CUT_IN = 5
+    JUMP_IN_CUT_IN = 6
+    FEASIBLE = 7
+
+
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
@@ -33,19 +45,19 @@ def failure(task, angle, branch, rows):
     standby = rows[0]
     reach = posture(task, axes, 0.0, branch, standby)
     if reach < 0:
-        return 0, reach, 0, last
+        return Stage.REACH_AT_THINNING, reach, 0, last
     thinning(task, angle, branch, rows[last])
     inside, joint = limit_margin(task, rows[last])
     if inside < 0:
-        return 1, inside, joint, last
+        return Stage.LIMIT_AT_THINNING, inside, joint, last
     reach = posture(task, axes, task.retreats[0], branch, standby)
     if reach < 0:
-        return 2, reach, 0, 0
+        return Stage.REACH_AT_STANDBY, reach, 0, 0
     for i in range(6):
         standby[i] = rows[last, i] + wrap(standby[i] - rows[last, i])
     inside, joint = limit_margin(task, standby)
     if inside < 0:
-        return 3, inside, joint, 0
+        return Stage.LIMIT_AT_STANDBY, inside, joint, 0
     trace(task, angle, branch, task.retreats, rows)
     q = np.empty(6)
     worst, limiting, row = 0.0, 0, -1
@@ -54,13 +66,13 @@ def failure(task, angle, branch, rows):
         if reach < worst:
             worst, row = reach, n
     if row >= 0:
-        return 4, worst, 0, row
+        return Stage.REACH_IN_CUT_IN, worst, 0, row
     for n in range(1, last):
         inside, joint = limit_margin(task, rows[n])
         if inside < worst:
             worst, limiting, row = inside, joint, n
     if row >= 0:
-        return 5, worst, limiting, row
+        return Stage.LIMIT_IN_CUT_IN, worst, limiting, row
     for n in range(last):
         allowed = JOINT_RATE_RAD_M * (task.retreats[n] - task.retreats[n + 1])
         for i in range(6):
@@ -68,8 +80,8 @@ def failure(task, angle, branch, rows):
             if left < worst:
                 worst, limiting, row = left, i, n
     if row >= 0:
-        return 6, worst, limiting, row
-    return FEASIBLE, 0.0, 0, 0
+        return Stage.JUMP_IN_CUT_IN, worst, limiting, row
+    return Stage.FEASIBLE, 0.0, 0, 0
 
 
 @kernel
@@ -107,14 +119,14 @@ def closest_failure(task, angles, between):
             # Both wrists of an arm have its reach: most angles fail there, at little cost.
             tool_axes(task, angle, axes)
             reach = wrist_reach(task, axes, arm)
-            if reach < 0 and not closer(0, reach, best_stage, best_margin):
+            if reach < 0 and not closer(Stage.REACH_AT_THINNING, reach, best_stage, best_margin):
                 continue
             for branch in range(2 * arm, 2 * arm + 2):
                 stage, margin, joint, row = failure(task, angle, branch, rows)
                 if closer(stage, margin, best_stage, best_margin):
                     best_stage, best_margin, best_joint, best_row = stage, margin, joint, row
                     best_branch, best_angle = branch, angle
-    if between and best_stage < FEASIBLE:
+    if between and best_stage < Stage.FEASIBLE:
         step = 2 * math.pi / len(angles)
         low, high = best_angle - step, best_angle + step
         while high - low > ANGLE_STEP_RAD:
@@ -125,7 +137,7 @@ def closest_failure(task, angles, between):
                 high, angle, found = right, left, at_left
             else:
                 low, angle, found = left, right, at_right
-            if closer(found[0], found[1], best_stage, best_margin) and found[0] < FEASIBLE:
+            if closer(found[0], found[1], best_stage, best_margin) and found[0] < Stage.FEASIBLE:
                 best_stage, best_margin, best_joint, best_row = found
                 best_angle = angle
     return best_stage, best_margin, best_joint, best_row, best_branch, best_angle

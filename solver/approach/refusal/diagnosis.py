@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.approach.arcs.arcs import sample_angles, task_arcs
-from solver.approach.refusal.closest import FEASIBLE, closest_failure
+from solver.approach.refusal.closest import Stage, closest_failure
 from solver.approach.refusal.nearest_change import nearest_angle, nearest_displacement
 from solver.approach.refusal.tolerances import DIAGNOSED_ANGLES
+from solver.approach.task.constraints import Constraint
 from solver.approach.task.feasibility import trace
 from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
@@ -17,8 +18,6 @@ from solver.approach.uncertainty.robust_search import robust_pieces
 from solver.approach.uncertainty.robustness import needed_margin
 from solver.problem.solution import Arc, Reason
 from solver.robots.model import Array
-
-_REACH = 6  # in the place of a joint's index
 
 
 def diagnose(task: ApproachTask, tried: Array | None = None) -> Reason:
@@ -48,36 +47,36 @@ def _closest(task: ApproachTask, tried: Array | None) -> Reason | None:
         closest_failure(task.for_kernels(side), angles, tried is None) for side in task.tool_sides
     )
     stage, margin, joint, row, *_ = max(failures, key=lambda failure: failure[:2])
-    if stage == FEASIBLE:
+    if stage == Stage.FEASIBLE:
         return None
-    return _stage_reason(task, int(stage), float(margin), int(joint), int(row))
+    return _stage_reason(task, Stage(stage), float(margin), int(joint), int(row))
 
 
-def _stage_reason(task: ApproachTask, stage: int, margin: float, joint: int, row: int) -> Reason:
+def _stage_reason(task: ApproachTask, stage: Stage, margin: float, joint: int, row: int) -> Reason:
     name = task.robot.joints[joint].name
     behind = f"{task.retreats_m[row] * 1000:.1f} mm before the target"
     outside = f"{-margin * 1000:.1f} mm outside the reach"
     beyond = f"{name} is {np.degrees(-margin):.2f} degrees beyond its limit"
     match stage:
-        case 0:
+        case Stage.REACH_AT_THINNING:
             detail = f"the wrist centre stays {outside} at every approach angle tried"
             return Reason("out_of_reach", detail, margin_m=margin)
-        case 1:
+        case Stage.LIMIT_AT_THINNING:
             detail = f"{beyond} in the thinning posture that comes closest to feasible"
             return Reason("joint_limit", detail, joint=name, margin_rad=margin)
-        case 2:
+        case Stage.REACH_AT_STANDBY:
             detail = (
                 f"the standby posture's wrist centre stays {outside} where the thinning posture is "
                 "feasible"
             )
             return Reason("standby_infeasible", detail, margin_m=margin)
-        case 3:
+        case Stage.LIMIT_AT_STANDBY:
             detail = f"{beyond} in the standby posture that comes closest to feasible"
             return Reason("standby_infeasible", detail, joint=name, margin_rad=margin)
-        case 4:
+        case Stage.REACH_IN_CUT_IN:
             detail = f"between feasible ends the wrist centre is {outside}, {behind}"
             return Reason("cut_in_infeasible", detail, margin_m=margin)
-        case 5:
+        case Stage.LIMIT_IN_CUT_IN:
             detail = f"between feasible ends {beyond}, {behind}"
             return Reason("cut_in_infeasible", detail, joint=name, margin_rad=margin)
         case _:
@@ -116,7 +115,7 @@ def _too_uncertain(task: ApproachTask, tried: Array | None) -> Reason:
     margin, row, joint = best
     last = len(task.retreats_m) - 1
     code = {0: "standby_infeasible", last: "joint_limit"}.get(row, "cut_in_infeasible")
-    name = None if joint == _REACH else task.robot.joints[joint].name
+    name = None if joint == Constraint.REACH else task.robot.joints[joint].name
     if name is None and row == last:
         code = "out_of_reach"
     detail = (

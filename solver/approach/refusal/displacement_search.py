@@ -9,299 +9,32 @@ are multiplied by half the arm's length, so that all are lengths [m].
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solver.approach.refusal.penalty_programme import penalty_programme, reset, update
+from solver.approach.refusal.displacement_constraints import (
+    Watched,
+    constraints,
+    copy_at,
+    scratch_arrays,
+)
+from solver.approach.refusal.displacement_minimum import minimise
 from solver.approach.refusal.tolerances import (
-    NEAREST_ANGLE_SCALE_M,
-    NEAREST_CONVERGED_M,
+    NEAREST_FLAT_REACH,
     NEAREST_FLATTEST,
-    NEAREST_HOPELESS,
     NEAREST_INSIDE_M,
-    NEAREST_INSIDE_RAD,
-    NEAREST_JUMP_SHARE,
-    NEAREST_LARGEST_TURN_RAD,
-    NEAREST_PENALTY,
     NEAREST_PRUNED,
-    NEAREST_RESTORATIONS,
+    NEAREST_REACH_STEPS,
     NEAREST_ROUNDS,
     NEAREST_START_INSIDE_M,
     NEAREST_STARTS,
-    NEAREST_STEEPEST,
-    NEAREST_STEPS,
-    NEAREST_TRIAL_STEPS,
+    NEAREST_WIDENING,
 )
-from solver.approach.task.feasibility import CutInTask, limit_margin, posture, tool_axes, trace
+from solver.approach.task.constraints import LIMITS
+from solver.approach.task.feasibility import limit_margin, posture, tool_axes, trace
 from solver.approach.uncertainty.displacement import rows_displacement_margin
 from solver.approach.uncertainty.sensitivity import joint_rates
 from solver.compiled import kernel
-from solver.kinematics.spherical_wrist import wrap
-from solver.robots.model import Array
-from solver.tolerances import JOINT_RATE_RAD_M
-
-_KINDS = 13  # constraints of a row: both limits of six joints, and the reach
-
-
-class Watched(NamedTuple):
-    """What a displacement has to meet.
-
-    Attributes:
-        rows: rows of the cut-in whose limits count, the first `rows_count`, thinning first.
-        jumps: row and joint of each jump that counts, between that row and the next one, the first
-            `jumps_count`, shape (n, 2).
-        spread: displacement that every limit has to bear [m].
-    """
-
-    rows: NDArray[np.int64]
-    rows_count: int
-    jumps: NDArray[np.int64]
-    jumps_count: int
-    spread: float
-
-
-class Scratch(NamedTuple):
-    """Arrays that the inner loops write to and forget."""
-
-    axes: Array
-    near: Array
-    q: Array
-    next_q: Array
-    rates: Array
-    next_rates: Array
-    reach_rates: Array
-
-
-@kernel
-def scratch_arrays():
-    """New scratch."""
-    return Scratch(
-        np.empty((3, 3)),
-        np.empty(6),
-        np.empty(6),
-        np.empty(6),
-        np.empty((6, 4)),
-        np.empty((6, 4)),
-        np.empty(4),
-    )
-
-
-@kernel
-def copy_at(task, position):
-    """The same task with its target at a position of its own, which may be written."""
-    return CutInTask(
-        task.geometry,
-        task.lower,
-        task.upper,
-        position,
-        task.y_axis,
-        task.outward,
-        task.sideways,
-        task.retreats,
-        task.reference,
-        task.weights,
-        task.squared,
-    )
-
-
-@kernel
-def row_constraints(task, turn, retreat, branch, spread, scratch, values, gradients):
-    """One row's constraints as distances [m], >= 0 where met, and their gradients.
-
-    Args:
-        task: the task, its target where it is displaced to.
-        turn: the branch direction, about which the approach angle turns.
-        retreat: distance of the row behind the target [m].
-        branch: inverse kinematics branch.
-        spread: displacement that every limit has to bear [m]. Where it is above 0 the straight
-            wrist is a limit too.
-        scratch: holds the tool's axes, and as `near` the posture on whose turns the row is.
-        values: written, shape (13,); the joints of a row out of reach are those at its edge.
-        gradients: written, shape (13, 4): by displacement [m/m] and approach angle [m/rad].
-    """
-    q, near, rates, reach_rates = scratch.q, scratch.near, scratch.rates, scratch.reach_rates
-    reach = posture(task, scratch.axes, retreat, branch, q)
-    lever = retreat + task.geometry.tool_length
-    joint_rates(task.geometry, q, scratch.axes, lever, turn, rates, reach_rates)
-    scale = (task.geometry.a2 + task.geometry.l3) / 2
-    steepest = NEAREST_STEEPEST if reach < 0 else math.inf
-    for i in range(6):
-        q[i] = near[i] + wrap(q[i] - near[i])
-        slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
-        flat = scale * min(1.0, steepest / max(slope * scale, 1e-300))
-        low, high = task.lower[i], task.upper[i]
-        if i == 4 and spread > 0:
-            offset = task.geometry.offsets[4]
-            below = math.pi * math.floor((q[4] + offset) / math.pi) - offset
-            low, high = max(low, below), min(high, below + math.pi)
-        values[2 * i] = scale * (q[i] - low - NEAREST_INSIDE_RAD - spread * slope)
-        values[2 * i + 1] = scale * (high - q[i] - NEAREST_INSIDE_RAD - spread * slope)
-        for k in range(4):
-            gradients[2 * i, k] = flat * rates[i, k]
-            gradients[2 * i + 1, k] = -flat * rates[i, k]
-    values[12] = reach - NEAREST_INSIDE_M - spread
-    for k in range(4):
-        gradients[12, k] = reach_rates[k]
-
-
-@kernel
-def jump_constraint(task, turn, row, joint, branch, scratch, gradient):
-    """What is left of the travel that one joint may make from a row to the next one, as a length.
-
-    Writes the gradient, shape (4,); returns the length [m].
-    """
-    q, next_q, rates, next_rates = scratch.q, scratch.next_q, scratch.rates, scratch.next_rates
-    retreat, after = task.retreats[row], task.retreats[row + 1]
-    length = task.geometry.tool_length
-    scale = (task.geometry.a2 + task.geometry.l3) / 2
-    posture(task, scratch.axes, retreat, branch, q)
-    joint_rates(task.geometry, q, scratch.axes, retreat + length, turn, rates, scratch.reach_rates)
-    posture(task, scratch.axes, after, branch, next_q)
-    joint_rates(
-        task.geometry, next_q, scratch.axes, after + length, turn, next_rates, scratch.reach_rates
-    )
-    travel = wrap(q[joint] - next_q[joint])
-    sign = 1.0 if travel >= 0 else -1.0
-    for k in range(4):
-        gradient[k] = -scale * sign * (rates[joint, k] - next_rates[joint, k])
-    allowed = (1.0 - NEAREST_JUMP_SHARE) * JOINT_RATE_RAD_M * (retreat - after)
-    return scale * (allowed - abs(travel))
-
-
-@kernel
-def thinning_turns(task, axes, branch, near):
-    """Writes to `near` the posture at the target on the turns that `thinning` chooses."""
-    reach = posture(task, axes, 0.0, branch, near)
-    for i in range(6):
-        for turn in (-2 * math.pi, 2 * math.pi):
-            other = near[i] + turn
-            inside = task.lower[i] <= other <= task.upper[i]
-            if inside and abs(other - task.reference[i]) < abs(near[i] - task.reference[i]):
-                near[i] = other
-    return reach
-
-
-@kernel
-def constraints(task, origin, x, turn, branch, watched, scratch, values, gradients):
-    """All watched constraints at x = (delta, angle); moves the task's target there."""
-    for i in range(3):
-        task.position[i] = origin[i] + x[i]
-    tool_axes(task, x[3], scratch.axes)
-    thinning_turns(task, scratch.axes, branch, scratch.near)
-    count = watched.rows_count
-    for w in range(count):
-        row_constraints(
-            task,
-            turn,
-            task.retreats[watched.rows[w]],
-            branch,
-            watched.spread,
-            scratch,
-            values[_KINDS * w : _KINDS * (w + 1)],
-            gradients[_KINDS * w : _KINDS * (w + 1)],
-        )
-    for w in range(watched.jumps_count):
-        row, joint = watched.jumps[w]
-        j = _KINDS * count + w
-        values[j] = jump_constraint(task, turn, row, joint, branch, scratch, gradients[j])
-
-
-@kernel
-def violation(values, count):
-    """Sum of what is missing in broken constraints [m]."""
-    total = 0.0
-    for j in range(count):
-        if values[j] < 0:
-            total -= values[j]
-    return total
-
-
-@kernel
-def lagrangian_slope(x, gradients, multipliers, count, slope):
-    """Writes the Lagrangian's gradient, shape (4,)."""
-    slope[0], slope[1], slope[2], slope[3] = x[0], x[1], x[2], 0.0
-    for j in range(count):
-        if multipliers[j] > 0:
-            for i in range(4):
-                slope[i] -= multipliers[j] * gradients[j, i]
-
-
-@kernel
-def minimise(task, origin, x, turn, branch, watched, best, scratch):
-    """Local minimum of |delta| from x, written to x; returns what is missing in constraints [m].
-
-    Infinite where it was left because it leads to a displacement longer than `best` [m].
-    """
-    rows = _KINDS * watched.rows_count + watched.jumps_count
-    values, gradients = np.empty(rows), np.empty((rows, 4))
-    new_values, new_gradients = np.empty(rows), np.empty((rows, 4))
-    towards, curvature = np.empty((rows, 4)), np.empty(rows)
-    hessian, inverse = np.empty((4, 4)), np.empty((4, 4))
-    multipliers, step, slope = np.zeros(rows), np.empty(4), np.zeros(4)
-    before, after, new = np.empty(4), np.empty(4), np.empty(4)
-    reset(hessian, inverse)
-    fresh = True
-    constraints(task, origin, x, turn, branch, watched, scratch, values, gradients)
-    most = NEAREST_PENALTY * (math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2) + 0.02)
-    for n in range(NEAREST_STEPS):
-        slope[:3] = x[:3]
-        penalty_programme(
-            inverse, slope, values, gradients, most, multipliers, step, towards, curvature
-        )
-        length = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2)
-        if length + NEAREST_ANGLE_SCALE_M * abs(step[3]) < NEAREST_CONVERGED_M:
-            break
-        scale = min(1.0, NEAREST_LARGEST_TURN_RAD / max(abs(step[3]), 1e-300))
-        if n >= NEAREST_TRIAL_STEPS and scale == 1.0:
-            ahead = 0.0
-            for i in range(3):
-                ahead += (x[i] + step[i]) ** 2
-            if math.sqrt(ahead) > NEAREST_HOPELESS * best:
-                return math.inf
-        here = violation(values, rows)
-        merit = (x[0] ** 2 + x[1] ** 2 + x[2] ** 2) / 2 + most * here
-        lagrangian_slope(x, gradients, multipliers, rows, before)
-        accepted = False
-        for _ in range(10):
-            for i in range(4):
-                new[i] = x[i] + scale * step[i]
-            constraints(
-                task, origin, new, turn, branch, watched, scratch, new_values, new_gradients
-            )
-            there = (new[0] ** 2 + new[1] ** 2 + new[2] ** 2) / 2
-            there += most * violation(new_values, rows)
-            if there < merit:
-                accepted = True
-                break
-            scale /= 2.5
-        if not accepted:
-            if fresh:
-                break
-            reset(hessian, inverse)
-            fresh = True
-            continue
-        lagrangian_slope(new, new_gradients, multipliers, rows, after)
-        for i in range(4):
-            step[i] *= scale
-            after[i] -= before[i]
-        update(hessian, inverse, step, after)
-        fresh = False
-        x[:] = new
-        values[:] = new_values
-        gradients[:, :] = new_gradients
-    slope[:] = 0.0
-    reset(hessian, inverse)
-    for _ in range(NEAREST_RESTORATIONS):
-        if violation(values, rows) <= 0.0:
-            break
-        penalty_programme(
-            inverse, slope, values, gradients, most, multipliers, step, towards, curvature
-        )
-        x += step
-        constraints(task, origin, x, turn, branch, watched, scratch, values, gradients)
-    return violation(values, rows)
 
 
 @kernel
@@ -312,7 +45,7 @@ def into_reach(task, origin, x, turn, branch, farthest, scratch):
     """
     q = scratch.q
     tool_axes(task, x[3], scratch.axes)
-    for n in range(3):
+    for n in range(NEAREST_REACH_STEPS):
         for i in range(3):
             task.position[i] = origin[i] + x[i]
         reach = posture(task, scratch.axes, 0.0, branch, q)
@@ -323,7 +56,7 @@ def into_reach(task, origin, x, turn, branch, farthest, scratch):
             return False
         joint_rates(task.geometry, q, scratch.axes, 0.0, turn, scratch.rates, scratch.reach_rates)
         rates = scratch.reach_rates
-        square = max(rates[0] ** 2 + rates[1] ** 2 + rates[2] ** 2, 1e-12)
+        square = max(rates[0] ** 2 + rates[1] ** 2 + rates[2] ** 2, NEAREST_FLAT_REACH)
         for i in range(3):
             x[i] += rates[i] / square * (NEAREST_START_INSIDE_M - reach)
     return True
@@ -344,7 +77,7 @@ def estimates(task, angles, spread, found, starts):
     """
     origin, moved = task.position, copy_at(task, task.position.copy())
     turn, scratch = np.cross(task.outward, task.sideways), scratch_arrays()
-    values, gradients = np.empty(2 * _KINDS), np.empty((2 * _KINDS, 4))
+    values, gradients = np.empty(2 * LIMITS), np.empty((2 * LIMITS, 4))
     ends = Watched(
         np.array([len(task.retreats) - 1, 0]), 2, np.empty((0, 2), dtype=np.int64), 0, spread
     )
@@ -365,7 +98,7 @@ def estimates(task, angles, spread, found, starts):
                     continue
             constraints(moved, origin, x, turn, branch, ends, scratch, values, gradients)
             worst = 0.0
-            for j in range(2 * _KINDS):
+            for j in range(2 * LIMITS):
                 if values[j] < 0:
                     slope = math.sqrt(
                         gradients[j, 0] ** 2 + gradients[j, 1] ** 2 + gradients[j, 2] ** 2
@@ -446,7 +179,7 @@ def nearest_displacement(task, branch, start, spread, best, rows):
         )
         if margin >= spread:
             return True, x
-        widened += 1.1 * (spread - margin) + NEAREST_INSIDE_M
+        widened += NEAREST_WIDENING * (spread - margin) + NEAREST_INSIDE_M
         if where not in listed[:count]:
             listed[count] = where
             count += 1

@@ -6,10 +6,12 @@ import numpy as np
 
 from solver.approach.refusal.tolerances import (
     NEAREST_ANGLE_SCALE_M,
-    NEAREST_CONVERGED_M,
+    NEAREST_DAMPING,
+    NEAREST_QP_CONVERGED_M,
     NEAREST_QP_SWEEPS,
 )
 from solver.compiled import kernel
+from solver.tolerances import LEAST_DIVISOR
 
 
 @kernel
@@ -52,7 +54,7 @@ def penalty_programme(
             if multipliers[j] == 0.0 and value >= 0.0:
                 continue
             if curvature[j] < 0.0:
-                curvature[j] = 1e-300
+                curvature[j] = LEAST_DIVISOR
                 for i in range(4):
                     towards[j, i] = 0.0
                     for k in range(4):
@@ -65,7 +67,7 @@ def penalty_programme(
                 largest = max(largest, abs(change))
                 for i in range(4):
                     step[i] += towards[j, i] * change
-        if largest <= NEAREST_CONVERGED_M * 1e-3:
+        if largest <= NEAREST_QP_CONVERGED_M:
             if everything:
                 break
             everything = True
@@ -94,13 +96,13 @@ def update(hessian, inverse, step, change):
             towards[i] += hessian[i, k] * step[k]
         curved += step[i] * towards[i]
         along += step[i] * change[i]
-    if curved <= 1e-300:
+    if curved <= LEAST_DIVISOR:
         return
-    if along < 0.2 * curved:
-        share = 0.8 * curved / (curved - along)
+    if along < NEAREST_DAMPING * curved:
+        share = (1 - NEAREST_DAMPING) * curved / (curved - along)
         for i in range(4):
             change[i] = share * change[i] + (1 - share) * towards[i]
-        along = 0.2 * curved
+        along = NEAREST_DAMPING * curved
     back, length = np.zeros(4), 0.0
     for i in range(4):
         for k in range(4):

@@ -24,8 +24,9 @@ NEAREST_LARGEST_TURN_RAD: Final = 0.3
 """Largest step of the approach angle in one step; beyond, the linear constraints mean nothing."""
 
 NEAREST_PENALTY: Final = 10.0
-"""Penalty of a broken constraint, in multiples of the displacement at the start plus 2 cm: above
-the multipliers, which are as large as the displacement unless constraints nearly oppose."""
+"""Penalty of a broken constraint, in multiples of the displacement at the start plus
+NEAREST_PENALTY_LEAST_M: a factor above the multipliers, which are as large as the displacement
+unless constraints nearly oppose."""
 
 NEAREST_QP_SWEEPS: Final = 60
 """Sweeps over the constraints in each quadratic programme; ten are usual."""
@@ -46,10 +47,11 @@ NEAREST_START_INSIDE_M: Final = 1e-3
 """How deep inside the reach a search starts [m]: at the edge the elbow's rate has no bound."""
 
 NEAREST_STEEPEST: Final = 10.0
-"""Largest slope of a joint constraint at a row out of reach, in half arm lengths a metre."""
+"""Largest slope of a joint constraint at a row out of reach [half arm lengths / m]: there it is the
+stretched arm's, which has no bound."""
 
 NEAREST_FLATTEST: Final = 0.1
-"""Smallest slope with which an estimate counts, in the same unit: no division by zero."""
+"""Smallest slope with which an estimate counts [half arm lengths / m]: no division by zero."""
 
 NEAREST_RESTORATIONS: Final = 12
 """Steps at most straight back to the constraints at the end; near them each squares the error."""
@@ -73,3 +75,31 @@ DIAGNOSED_ANGLES: Final = 180
 
 NEAREST_PRUNED: Final = 2.0
 """Starts whose estimate is above this many times the best displacement found are left out."""
+
+NEAREST_QP_CONVERGED_M: Final = 1e-10
+"""Change of a multiplier, which is a length here, below which a quadratic programme is solved [m]:
+a thousandth of the step that ends the search."""
+
+NEAREST_PENALTY_LEAST_M: Final = 0.02
+"""What is added to the displacement at the start before it is made the penalty [m]: a start that
+needs no displacement would have none."""
+
+NEAREST_CUTS: Final = 10
+"""How often a step that does not lower the merit function is shortened."""
+
+NEAREST_CUT: Final = 2.5
+"""How many times shorter each time; after ten times it is a ten-thousandth."""
+
+NEAREST_DAMPING: Final = 0.2
+"""Least curvature along a step as a share of the approximate Hessian's there (Powell's damping), so
+that its update stays positive definite."""
+
+NEAREST_REACH_STEPS: Final = 3
+"""Linearised steps into the reach where a search starts; what they miss is the search's own."""
+
+NEAREST_FLAT_REACH: Final = 1e-12
+"""Least squared slope [m2/m2] of the reach that such a step is divided by: no division by zero."""
+
+NEAREST_WIDENING: Final = 1.1
+"""By how many times what is missing the displacement that has to be borne is widened: limits bend,
+and the widening itself costs some."""

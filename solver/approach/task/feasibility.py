@@ -12,6 +12,7 @@ import numpy as np
 
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import WristGeometry, one_branch, wrap
+from solver.problem.effort import joint_cost
 from solver.robots.model import Array
 from solver.tolerances import JOINT_RATE_RAD_M, NEAR_FEASIBLE_RAD
 
@@ -169,8 +170,7 @@ def effort(task, q):
     """Weighted joint travel from the reference to q (T's minimum effort; squared for l2)."""
     total = 0.0
     for i in range(6):
-        change = abs(q[i] - task.reference[i])
-        total += task.weights[i] * (change * change if task.squared else change)
+        total += task.weights[i] * joint_cost(q[i] - task.reference[i], task.squared)
     return total
 
 

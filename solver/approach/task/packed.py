@@ -17,6 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from solver.approach.task.constraints import JOINTS
 from solver.compiled import inlined
 from solver.kinematics.spherical_wrist import WristGeometry
 from solver.robots.model import Array
@@ -27,33 +28,6 @@ NEVER_LIMITS: Final = -2.0
 
 NO_ROOM: Final = 2.0
 """Cosine of half a range that the margin asked for has emptied: above every cosine."""
-
-_SCALARS: Final = 13
-COS_MIDDLE: Final = 43
-SIN_MIDDLE: Final = 49
-COS_HALF: Final = 55
-LOWER: Final = 61
-UPPER: Final = 67
-REFERENCE: Final = 73
-WEIGHTS: Final = 79
-SQUARED: Final = 85
-NUMBERS: Final = 86
-"""Columns of a row of numbers: the arm's 25, the circle's 18, limits as cosines 18, then these."""
-
-
-class PackedTask(NamedTuple):
-    """One target with the tool on one side, seen from a reference posture, for the inner loops.
-
-    Attributes:
-        numbers: shape (NUMBERS,).
-        retreats: distances behind the target, from the standoff down to 0, shape (rows,) [m].
-        cos_steps: cosine of the turn that counts as a wrist jump, between row and row, shape
-            (rows - 1,); below -1 where half a turn does not.
-    """
-
-    numbers: Array
-    retreats: Array
-    cos_steps: Array
 
 
 class ApproachCircle(NamedTuple):
@@ -69,6 +43,52 @@ class ApproachCircle(NamedTuple):
     sideways: tuple[float, float, float]
     x_outward: tuple[float, float, float]
     x_sideways: tuple[float, float, float]
+
+
+_SIX: Final = ("cos_middle", "sin_middle", "cos_half", "lower", "upper", "reference", "weights")
+
+LAYOUT: Final[tuple[tuple[str, int], ...]] = (
+    *((name, JOINTS if name in ("offsets", "middles") else 1) for name in WristGeometry._fields),
+    *((name, 3) for name in ApproachCircle._fields),
+    *((name, JOINTS) for name in _SIX),
+    ("squared", 1),
+)
+"""Fields of a row of numbers with their widths: the arm's, the circle's, cosine and sine of the
+middle of each joint's limits, cosine of half their range, limits [rad], reference [rad], weights,
+and whether the norm is l2."""
+
+COLUMNS: Final = {name: sum(width for _, width in LAYOUT[:k]) for k, (name, _) in enumerate(LAYOUT)}
+"""The first column of each field."""
+
+NUMBERS: Final = sum(width for _, width in LAYOUT)
+"""Columns of a row of numbers."""
+
+# As plain numbers, which Numba compiles in.
+COS_MIDDLE: Final = COLUMNS["cos_middle"]
+SIN_MIDDLE: Final = COLUMNS["sin_middle"]
+COS_HALF: Final = COLUMNS["cos_half"]
+LOWER: Final = COLUMNS["lower"]
+UPPER: Final = COLUMNS["upper"]
+REFERENCE: Final = COLUMNS["reference"]
+WEIGHTS: Final = COLUMNS["weights"]
+SQUARED: Final = COLUMNS["squared"]
+_ARM: Final = WristGeometry._make(COLUMNS[name] for name in WristGeometry._fields)
+_CIRCLE: Final = ApproachCircle._make(COLUMNS[name] for name in ApproachCircle._fields)
+
+
+class PackedTask(NamedTuple):
+    """One target with the tool on one side, seen from a reference posture, for the inner loops.
+
+    Attributes:
+        numbers: shape (NUMBERS,).
+        retreats: distances behind the target, from the standoff down to 0, shape (rows,) [m].
+        cos_steps: cosine of the turn that counts as a wrist jump, between row and row, shape
+            (rows - 1,); below -1 where half a turn does not.
+    """
+
+    numbers: Array
+    retreats: Array
+    cos_steps: Array
 
 
 def pack(
@@ -94,14 +114,27 @@ def pack(
     lower, upper = limits
     middle, half = (lower + upper) / 2 + np.asarray(geometry.offsets), (upper - lower) / 2
     cos_half = np.where(half < math.pi, np.cos(half), NEVER_LIMITS)
-    parts = (
-        np.array([*geometry[:_SCALARS], *geometry.offsets, *geometry.middles]),
-        *(positions, y, outward, sideways, np.cross(y, outward), np.cross(y, sideways)),
-        *(np.cos(middle), np.sin(middle), np.where(half >= 0.0, cos_half, NO_ROOM)),
-        *(lower, upper, references, weights, np.array([float(squared)])),
-    )
-    rows = [np.broadcast_to(part, (len(positions), part.shape[-1])) for part in parts]
-    return np.ascontiguousarray(np.concatenate(rows, axis=1))
+    fields = geometry._asdict() | {
+        "position": positions,
+        "y": y,
+        "outward": outward,
+        "sideways": sideways,
+        "x_outward": np.cross(y, outward),
+        "x_sideways": np.cross(y, sideways),
+        "cos_middle": np.cos(middle),
+        "sin_middle": np.sin(middle),
+        "cos_half": np.where(half >= 0.0, cos_half, NO_ROOM),
+        "lower": lower,
+        "upper": upper,
+        "reference": references,
+        "weights": weights,
+        "squared": squared,
+    }
+    rows = np.empty((len(positions), NUMBERS))
+    for name, width in LAYOUT:
+        first = COLUMNS[name]
+        rows[:, first : first + width] = fields[name]
+    return rows
 
 
 def jump_cosines(retreats: Sequence[float] | Array) -> Array:
@@ -111,21 +144,50 @@ def jump_cosines(retreats: Sequence[float] | Array) -> Array:
 
 
 @inlined
+def three(n, k):
+    """Three numbers of a row from column k on."""
+    return n[k], n[k + 1], n[k + 2]
+
+
+@inlined
+def six(n, k):
+    """Six numbers of a row from column k on."""
+    return n[k], n[k + 1], n[k + 2], n[k + 3], n[k + 4], n[k + 5]
+
+
+@inlined
 def unpack_geometry(n):
     """The arm and tool of a row of numbers."""
     return WristGeometry(
-        n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12],
-        (n[13], n[14], n[15], n[16], n[17], n[18]), (n[19], n[20], n[21], n[22], n[23], n[24]),
-    )  # fmt: skip
+        a1=n[_ARM.a1],
+        a2=n[_ARM.a2],
+        l3=n[_ARM.l3],
+        beta=n[_ARM.beta],
+        cos_beta=n[_ARM.cos_beta],
+        sin_beta=n[_ARM.sin_beta],
+        shoulder=n[_ARM.shoulder],
+        d1=n[_ARM.d1],
+        sign1=n[_ARM.sign1],
+        sign3=n[_ARM.sign3],
+        sign4=n[_ARM.sign4],
+        sign5=n[_ARM.sign5],
+        tool_length=n[_ARM.tool_length],
+        offsets=six(n, _ARM.offsets),
+        middles=six(n, _ARM.middles),
+    )
 
 
 @inlined
 def unpack_circle(n):
     """The circle of a row of numbers."""
     return ApproachCircle(
-        (n[25], n[26], n[27]), (n[28], n[29], n[30]), (n[31], n[32], n[33]),
-        (n[34], n[35], n[36]), (n[37], n[38], n[39]), (n[40], n[41], n[42]),
-    )  # fmt: skip
+        position=three(n, _CIRCLE.position),
+        y=three(n, _CIRCLE.y),
+        outward=three(n, _CIRCLE.outward),
+        sideways=three(n, _CIRCLE.sideways),
+        x_outward=three(n, _CIRCLE.x_outward),
+        x_sideways=three(n, _CIRCLE.x_sideways),
+    )
 
 
 @inlined

@@ -23,10 +23,7 @@ def packed_targets(
     """Targets for the inner loops by tool side and target, shape (sides, n, NUMBERS)."""
     options, robot = problem.options, problem.robot
     geometry = wrist_geometry(robot, problem.mounted_tool)
-    limits = (
-        robot.lower + options.limit_margin_rad,
-        robot.upper - options.limit_margin_rad,
-    )
+    limits = robot.limits_within(options.limit_margin_rad)
     branch, outward, sideways = approach_frames(positions, directions)
     mount = inverse(robot.mount)
     turn = mount[:3, :3].T
@@ -40,7 +37,7 @@ def packed_targets(
                 (placed, side * branch @ turn, outward @ turn, sideways @ turn),
                 references,
                 np.asarray(problem.joint_weights),
-                options.norm == "l2",
+                options.squared,
             )
             for side in sides
         ]

@@ -12,6 +12,7 @@ from solver.approach.task.packed import PackedTask, jump_cosines, pack
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem.options import Options
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
@@ -45,14 +46,19 @@ class ApproachTask:
         return (1, -1) if self.options.symmetric_tool else (1,)
 
     @cached_property
-    def lower(self) -> Array:
-        """Lower limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
-        return np.asarray(self.robot.lower + self.options.limit_margin_rad * self.robot.turning)
+    def limits(self) -> tuple[Array, Array]:
+        """Lower and upper limits less the margin asked for, shape (joints,) each [rad or m]."""
+        return self.robot.limits_within(self.options.limit_margin_rad)
 
-    @cached_property
+    @property
+    def lower(self) -> Array:
+        """Lower limits less the margin asked for, shape (joints,) [rad or m]."""
+        return self.limits[0]
+
+    @property
     def upper(self) -> Array:
-        """Upper limits, revolute ones less the margin asked for, shape (joints,) [rad or m]."""
-        return np.asarray(self.robot.upper - self.options.limit_margin_rad * self.robot.turning)
+        """Upper limits less the margin asked for, shape (joints,) [rad or m]."""
+        return self.limits[1]
 
     def for_kernels(self, tool_side: int) -> CutInTask:
         """The task as the kernels take it, with the tool on one side, in the mount's frame."""
@@ -68,7 +74,7 @@ class ApproachTask:
             retreats=np.asarray(self.retreats_m),
             reference=np.asarray(self.reference),
             weights=np.asarray(self.joint_weights),
-            squared=self.options.norm == "l2",
+            squared=self.options.squared,
         )
 
     def _vectors(self, tool_side: int) -> tuple[Array, Array, Array, Array]:
@@ -91,11 +97,11 @@ class ApproachTask:
         position, y_axis, outward, sideways = self._vectors(tool_side)
         numbers = pack(
             wrist_geometry(self.robot, self.tool),
-            (self.lower, self.upper),
+            self.limits,
             (position[None], y_axis[None], outward[None], sideways[None]),
             np.asarray(self.reference),
             np.asarray(self.joint_weights),
-            self.options.norm == "l2",
+            self.options.squared,
         )
         return PackedTask(numbers[0], np.asarray(self.retreats_m), jump_cosines(self.retreats_m))
 
@@ -118,14 +124,12 @@ class ApproachTask:
 
 def approach_task(problem: Problem, target: Target, reference: Sequence[float]) -> ApproachTask:
     """The task of one target of a problem, seen from a reference posture [rad]."""
-    options = problem.options
-    rows = np.linspace(options.standoff_m, 0.0, options.path_points)
     return ApproachTask(
         robot=problem.robot,
         tool=problem.mounted_tool,
-        options=options,
+        options=problem.options,
         target=target,
         reference=tuple(float(value) for value in reference),
         joint_weights=problem.joint_weights,
-        retreats_m=tuple(float(row) for row in rows),
+        retreats_m=tuple(even_retreats(problem.options).tolist()),
     )

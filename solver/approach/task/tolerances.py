@@ -3,4 +3,4 @@
 from typing import Final
 
 PARALLEL_SINE: Final = 1e-6
-"""|b x p| / |p| below which "straight out from the base" defines no zero of the angle."""
+"""|b x p| / |p|, a sine, below which "straight out from the base" defines no zero of the angle."""

@@ -11,17 +11,23 @@ import math
 
 import numpy as np
 
+from solver.approach.task.constraints import JOINTS, LIMITS, REACH
 from solver.approach.task.feasibility import tool_axes, trace
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
 from solver.approach.uncertainty.tolerances import (
     DISPLACEMENT_ROUNDS,
+    DISPLACEMENT_STEP_M,
     DISPLACEMENT_STEP_RELATIVE,
     PROBE_HALVINGS,
     SCREENED_DISTANCES,
-    SINGULAR_SINE,
     STRAIGHT_WRIST_PROBES,
+    STRAIGHT_WRIST_SINE,
 )
 from solver.compiled import kernel
+from solver.tolerances import LEAST_DIVISOR
+
+_LOWER_5, _UPPER_5 = 2 * 4, 2 * 4 + 1
+"""The limits of joint 5, in whose place a straight wrist may stand."""
 
 
 @kernel
@@ -34,7 +40,7 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
         axes: its orientation, shape (3, 3).
         branch: inverse kinematics branch.
         q: the posture there, shape (6,) [rad].
-        kind: index of the joint; 6 for the reach margin.
+        kind: index of the joint; REACH for the reach margin.
         limit: the joint's limit [rad]; 0 for the reach.
         delta: where the search starts, a shift inside the reach; written, the shift found, shape
             (3,) [m].
@@ -44,8 +50,8 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
     shifted(g, position, delta, axes, branch, q, at)
     for _ in range(DISPLACEMENT_ROUNDS):
         reach = joint_rates(g, at, axes, 0.0, turn, rates, reach_rates)
-        gradient = reach_rates if kind == 6 else rates[kind]
-        missing = limit - (reach if kind == 6 else at[kind])
+        gradient = reach_rates if kind == REACH else rates[kind]
+        missing = limit - (reach if kind == REACH else at[kind])
         square = 0.0
         for i in range(3):
             square += gradient[i] * gradient[i]
@@ -55,7 +61,9 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
             new[i] = gradient[i] * missing / square
             change += (new[i] - delta[i]) ** 2
             length += new[i] * new[i]
-        while shifted(g, position, new, axes, branch, q, at) < 0.0 and change > 1e-18:
+        while (
+            shifted(g, position, new, axes, branch, q, at) < 0.0 and change > DISPLACEMENT_STEP_M**2
+        ):
             change, length = change / 4, 0.0
             for i in range(3):
                 new[i] = (new[i] + delta[i]) / 2
@@ -89,7 +97,7 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
             m11 += first[i] * first[i]
             m12 += first[i] * second[i]
             m22 += second[i] * second[i]
-        determinant = max(m11 * m22 - m12 * m12, 1e-300)
+        determinant = max(m11 * m22 - m12 * m12, LEAST_DIVISOR)
         along = (m22 * value1 - m12 * value2) / determinant
         across = (m11 * value2 - m12 * value1) / determinant
         change, length = 0.0, 0.0
@@ -99,7 +107,7 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
             length += new * new
             delta[i] = new
         reach = shifted(g, position, delta, axes, branch, q, at)
-        near_tip = abs(math.sin(at[4] + g.offsets[4])) < 10 * SINGULAR_SINE
+        near_tip = abs(math.sin(at[4] + g.offsets[4])) < STRAIGHT_WRIST_SINE
         if reach < 0 or near_tip or change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
             break
     return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
@@ -107,18 +115,17 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
 
 @kernel
 def first_order(g, lower, upper, q, axes, rates, reach_rates, distances):
-    """Fills the distances at which each limit is met to first order, shape (13,) [m].
+    """Fills the distances at which each limit is met to first order, shape (LIMITS,) [m].
 
-    Entry 2 i is joint i's lower limit, 2 i + 1 its upper one, 12 the reach; `lower` and `upper` are
-    those of `branch_limits`. Negative where a limit is broken.
+    `lower` and `upper` are those of `branch_limits`. Negative where a limit is broken.
     """
     reach = joint_rates(g, q, axes, 0.0, axes[:, 1], rates, reach_rates)
     for i in range(6):
         slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
-        distances[2 * i] = (q[i] - lower[i]) / max(slope, 1e-300)
-        distances[2 * i + 1] = (upper[i] - q[i]) / max(slope, 1e-300)
+        distances[2 * i] = (q[i] - lower[i]) / max(slope, LEAST_DIVISOR)
+        distances[2 * i + 1] = (upper[i] - q[i]) / max(slope, LEAST_DIVISOR)
     slope = math.sqrt(reach_rates[0] ** 2 + reach_rates[1] ** 2 + reach_rates[2] ** 2)
-    distances[12] = reach / max(slope, 1e-300)
+    distances[2 * REACH] = reach / max(slope, LEAST_DIVISOR)
 
 
 @kernel
@@ -148,23 +155,25 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
 
     Returns:
         The length of the smallest displacement [m], 0 where a limit is met or broken already; the
-        row; and the joint that is met there, 6 for the reach.
+        row; and the joint that is met there, REACH for the reach.
     """
     axes = np.ascontiguousarray(pose[:3, :3])
     low, high = np.empty(6), np.empty(6)
-    rates, reach_rates, distances = np.empty((6, 4)), np.empty(4), np.empty(13)
-    nearest, nearest_row = np.full(13, np.inf), np.zeros(13, dtype=np.int64)
+    rates, reach_rates, distances = np.empty((6, 4)), np.empty(4), np.empty(LIMITS)
+    nearest, nearest_row = np.full(LIMITS, np.inf), np.zeros(LIMITS, dtype=np.int64)
     for n in range(len(retreats)):
         branch_limits(g, lower, upper, rows[n], low, high)
         first_order(g, low, high, rows[n], axes, rates, reach_rates, distances)
-        for kind in range(13):
+        for kind in range(LIMITS):
             if distances[kind] < nearest[kind]:
                 nearest[kind], nearest_row[kind] = distances[kind], n
-    straight = min(nearest[8], nearest[9])
-    straight_row = nearest_row[8] if nearest[8] < nearest[9] else nearest_row[9]
+    straight = min(nearest[_LOWER_5], nearest[_UPPER_5])
+    straight_row = (
+        nearest_row[_LOWER_5] if nearest[_LOWER_5] < nearest[_UPPER_5] else nearest_row[_UPPER_5]
+    )
     position, delta, best_delta = np.empty(3), np.empty(3), np.zeros(3)
     best, best_row, best_joint = math.inf, 0, 0
-    for _ in range(13):
+    for _ in range(LIMITS):
         kind = int(np.argmin(nearest))
         if nearest[kind] > SCREENED_DISTANCES * best:
             break
@@ -175,10 +184,10 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
         behind(pose, retreats[n], position)
         branch_limits(g, lower, upper, rows[n], low, high)
         limit = 0.0
-        if kind < 12:
+        if kind < 2 * JOINTS:
             limit = high[kind // 2] if kind % 2 else low[kind // 2]
         delta[:] = 0.0
-        if (kind == 8 and low[4] > lower[4]) or (kind == 9 and high[4] < upper[4]):
+        if (kind == _LOWER_5 and low[4] > lower[4]) or (kind == _UPPER_5 and high[4] < upper[4]):
             length = straight_wrist_distance(g, position, axes, branch, rows[n], delta)
         else:
             length = limit_distance(g, position, axes, branch, rows[n], kind // 2, limit, delta)
@@ -233,8 +242,8 @@ def other_rows(
         for n in range(len(retreats)):
             behind(pose, retreats[n], position)
             reach = shifted(g, position, best_delta, axes, branch, rows[n], at)
-            if reach < worst and not (n == best_row and best_joint == 6):
-                worst, row, joint = reach, n, 6
+            if reach < worst and not (n == best_row and best_joint == REACH):
+                worst, row, joint = reach, n, REACH
             for i in range(6):
                 inside = min(at[i] - lower[i], upper[i] - at[i])
                 if inside < worst and not (n == best_row and best_joint == i):
@@ -244,7 +253,7 @@ def other_rows(
         behind(pose, retreats[row], position)
         reach = shifted(g, position, best_delta, axes, branch, rows[row], at)
         limit = 0.0
-        if joint < 6:
+        if joint < JOINTS:
             limit = lower[joint] if at[joint] < lower[joint] else upper[joint]
         delta[:] = 0.0
         length = limit_distance(g, position, axes, branch, rows[row], joint, limit, delta)
@@ -270,9 +279,9 @@ def beside_straight_wrist(
     behind(pose, retreats[n], position)
     joint_rates(g, rows[n], axes, 0.0, axes[:, 1], rates, reach_rates)
     along, across = rates[4, :3].copy(), rates[3, :3].copy()
-    along /= max(math.sqrt(np.dot(along, along)), 1e-300)
+    along /= max(math.sqrt(np.dot(along, along)), LEAST_DIVISOR)
     across -= np.dot(across, along) * along
-    across /= max(math.sqrt(np.dot(across, across)), 1e-300)
+    across /= max(math.sqrt(np.dot(across, across)), LEAST_DIVISOR)
     for k in range(STRAIGHT_WRIST_PROBES):
         turn = 2 * math.pi * k / STRAIGHT_WRIST_PROBES
         direction = math.cos(turn) * along + math.sin(turn) * across

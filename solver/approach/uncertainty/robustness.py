@@ -21,6 +21,7 @@ from solver.kinematics.families import rail_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem.options import Options
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
@@ -102,10 +103,9 @@ def displacement_margins(
     margins = np.empty(len(paths))
     rows_displacement_margins(
         wrist_geometry(robot, tool),
-        np.asarray(robot.lower + options.limit_margin_rad),
-        np.asarray(robot.upper - options.limit_margin_rad),
+        *robot.limits_within(options.limit_margin_rad),
         np.ascontiguousarray(inverse(robot.mount) @ many_poses(robot, tool, paths[:, -1])),
-        np.linspace(options.standoff_m, 0.0, paths.shape[1]),
+        even_retreats(options, paths.shape[1]),
         branches,
         paths,
         margins,

@@ -13,6 +13,7 @@ import numpy as np
 from solver.approach.uncertainty.tolerances import SINGULAR_SINE
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import one_branch, wrap
+from solver.tolerances import LEAST_DIVISOR
 
 
 @kernel
@@ -79,9 +80,11 @@ def joint_rates(g, q, axes, lever, turn, rates, reach):
         )
         rates[5, k] = (about5 - cos5 * about3) / square5
         if post <= min(outer, inner):
-            reach[k] = (along * x + g.shoulder * g.sign1 * (vx * s1 - vy * c1)) / max(rho, 1e-300)
+            reach[k] = (along * x + g.shoulder * g.sign1 * (vx * s1 - vy * c1)) / max(
+                rho, LEAST_DIVISOR
+            )
         else:
-            outward = (r * ur + s * us) / max(distance, 1e-300)
+            outward = (r * ur + s * us) / max(distance, LEAST_DIVISOR)
             reach[k] = -outward if outer <= inner else outward
     return min(outer, inner, post)
 

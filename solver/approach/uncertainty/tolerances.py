@@ -2,7 +2,6 @@
 
 from typing import Final
 
-# --- Displaced targets --------------------------------------------------------------------------
 SINGULAR_SINE: Final = 1e-6
 """Sine of the wrist's, elbow's or waist's singular angle below which rates are those at this sine:
 joints turn by 1e6 times the tool's turn there, and no division by zero."""
@@ -11,7 +10,7 @@ DISPLACEMENT_ROUNDS: Final = 12
 """Linearisations at most in the search for the nearest point of a limit; four are usual."""
 
 DISPLACEMENT_STEP_RELATIVE: Final = 1e-6
-"""Relative change of that point below which it is found."""
+"""Change of that point, relative to its distance, below which it is found."""
 
 SCREENED_DISTANCES: Final = 2.5
 """Limits whose first-order distance is above this many times the smallest exact one are not looked
@@ -24,7 +23,13 @@ a tenth of what these joints turn in all."""
 PROBE_HALVINGS: Final = 12
 """Halvings of the way to a broken limit before the nearest point of the limit is looked for."""
 
-# --- Uncertain targets --------------------------------------------------------------------------
 ROBUST_ANGLE_RAD: Final = 1e-9
 """Width to which the ends of arcs that bear an uncertainty are bisected [rad]. The margin changes
 by less than 1e-8 m within it; the verifier allows POSITION_ERROR_M."""
+
+DISPLACEMENT_STEP_M: Final = 1e-9
+"""Step of that point that is not shortened any further where it leads out of reach [m]."""
+
+STRAIGHT_WRIST_SINE: Final = 10 * SINGULAR_SINE
+"""Sine of joint 5 below which the search for the nearest straight wrist has come to it; nearer,
+rates are no longer those of the posture."""

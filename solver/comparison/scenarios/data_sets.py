@@ -20,7 +20,7 @@ from solver.comparison.contest import Contest, Published
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
 from solver.problem.thinning import Blossom, BlossomBranch, select_blossoms
-from solver.robots.model import load_robot
+from solver.robots.files import load_robot
 
 THESIS: Final = "F. Ouyang, thesis, University of Illinois at Urbana-Champaign, 2012"
 PUBLISHED_ON: Final = "MATLAB 7.11 (R2010b); the machine is not named (T 3.2.2)"

@@ -11,7 +11,7 @@ from solver.comparison.contest import Account, Contest
 from solver.comparison.scenarios.data_sets import THESIS
 from solver.comparison.targets import as_targets, drawn_in_box
 from solver.problem.problem import Problem
-from solver.robots.model import load_robot
+from solver.robots.files import load_robot
 
 SEED: Final = 20_124
 TARGETS: Final = 100

@@ -18,7 +18,8 @@ from solver.comparison.scenarios.data_sets import BLOSSOM_SPACING_M, THESIS
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
 from solver.problem.thinning import Blossom, BlossomBranch, PlacedBlossom, select_blossoms
-from solver.robots.model import Array, load_robot
+from solver.robots.files import load_robot
+from solver.robots.model import Array
 
 HEIGHT_M: Final = 1.0
 LEANS_DEG: Final = (-30.0, 40.0)

@@ -11,7 +11,7 @@ from solver.comparison.targets import as_targets, drawn_at_edges
 from solver.problem.options import Options
 from solver.problem.problem import Problem
 from solver.problem.solution import Arc
-from solver.robots.model import load_robot
+from solver.robots.files import load_robot
 
 SEED: Final = 20_122
 TARGETS: Final = 50

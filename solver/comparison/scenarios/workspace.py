@@ -12,7 +12,7 @@ from solver.comparison.contest import Contest
 from solver.comparison.targets import as_targets, drawn_in_box
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
-from solver.robots.model import load_robot
+from solver.robots.files import load_robot
 
 SEED: Final = 20_121
 TARGETS: Final = 50

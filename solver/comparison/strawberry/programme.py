@@ -25,9 +25,10 @@ from solver.comparison.strawberry.tolerances import (
     MECHANISM_NLP_BARRIER,
     MECHANISM_NLP_TOLERANCE,
 )
+from solver.methods.nlp.ipopt import ipopt_options
 from solver.problem.solution import Reason
 from solver.robots.model import Array
-from solver.tolerances import NLP_BOUND_PUSH, NLP_ITERATIONS
+from solver.tolerances import NLP_ITERATIONS
 
 
 def solve_ncos_cold(mechanism: Mechanism, target: Point) -> Answer | Reason:
@@ -119,19 +120,9 @@ def _solver() -> Any:
         + tip * l3 / 2 * (1 - ca.cos(beta) * ca.cos(theta))
     )
     programme = {"x": q, "p": p, "f": lost - rise, "g": at - ca.vertcat(x, y, z)}
-    options: dict[str, Any] = {
-        "print_time": False,
-        "error_on_fail": False,
-        "calc_lam_p": False,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "tol": MECHANISM_NLP_TOLERANCE,
-            "max_iter": NLP_ITERATIONS,
-            "mu_init": MECHANISM_NLP_BARRIER,
-            "bound_push": NLP_BOUND_PUSH,
-            "bound_frac": NLP_BOUND_PUSH,
-            "bound_relax_factor": 0.0,
-        },
-    }
+    options = ipopt_options(
+        tolerance=MECHANISM_NLP_TOLERANCE,
+        barrier=MECHANISM_NLP_BARRIER,
+        iterations=NLP_ITERATIONS,
+    )
     return ca.nlpsol("strawberry", "ipopt", programme, options)

@@ -8,29 +8,40 @@ import numpy as np
 
 from solver.methods.nlp.formulation import Shape, build_programme
 from solver.methods.nlp.instance import Instance, ProgrammeResult
-from solver.methods.nlp.tolerances import NLP_BARRIER, NLP_TOLERANCE
+from solver.methods.nlp.tolerances import NLP_BARRIER, NLP_BOUND_PUSH, NLP_TOLERANCE
 from solver.robots.model import Robot
-from solver.tolerances import NLP_BOUND_PUSH, NLP_ITERATIONS
+from solver.tolerances import NLP_ITERATIONS
 
 
-@lru_cache(maxsize=64)
-def _solver(robot: Robot, shape: Shape, iterations: int) -> Any:
-    """IPOPT on a robot's programme, built once in a process."""
-    options: dict[str, Any] = {
+def ipopt_options(*, tolerance: float, barrier: float, iterations: int) -> dict[str, Any]:
+    """What `casadi.nlpsol` is told: silent, and bounds as they are, from a start near an optimum.
+
+    Args:
+        tolerance: overall error, in the programme's units.
+        barrier: the first barrier parameter, in units of the cost.
+        iterations: the most.
+    """
+    return {
         "print_time": False,
         "error_on_fail": False,
         "calc_lam_p": False,
         "ipopt": {
             "print_level": 0,
             "sb": "yes",
-            "tol": NLP_TOLERANCE,
+            "tol": tolerance,
             "max_iter": iterations,
-            "mu_init": NLP_BARRIER,
+            "mu_init": barrier,
             "bound_push": NLP_BOUND_PUSH,
             "bound_frac": NLP_BOUND_PUSH,
             "bound_relax_factor": 0.0,
         },
     }
+
+
+@lru_cache(maxsize=64)
+def _solver(robot: Robot, shape: Shape, iterations: int) -> Any:
+    """IPOPT on a robot's programme, built once in a process."""
+    options = ipopt_options(tolerance=NLP_TOLERANCE, barrier=NLP_BARRIER, iterations=iterations)
     return ca.nlpsol("task_definition", "ipopt", build_programme(robot, shape).nlp, options)
 
 

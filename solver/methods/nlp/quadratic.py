@@ -17,7 +17,7 @@ from solver.methods.nlp.tolerances import (
 )
 from solver.robots.model import Array
 
-_SETTINGS: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
+QP_SOLVERS: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
     {
         "daqp": {"primal_tol": QP_TOLERANCE, "dual_tol": QP_TOLERANCE},
         "osqp": {
@@ -30,9 +30,7 @@ _SETTINGS: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
         "piqp": {"eps_abs": QP_TOLERANCE, "eps_rel": QP_TOLERANCE, "backend": "dense"},
     }
 )
-"""Settings of each solver; the tolerances are absolute, as the programme is scaled near one."""
-
-QP_SOLVERS: Final = tuple(_SETTINGS)
+"""Each with its settings; the tolerances are absolute, as the programme is scaled near one."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +73,7 @@ def solve_quadratic(
         with warnings.catch_warnings():
             # qpsolvers warns where a solver ends without an answer; `found` says so.
             warnings.simplefilter("ignore")
-            solution = qpsolvers.solve_problem(problem, solver, **_SETTINGS[solver])
+            solution = qpsolvers.solve_problem(problem, solver, **QP_SOLVERS[solver])
     except (QPError, ValueError, ArithmeticError) as error:
         return _none(gradient, h, f"{solver}: {error}")
     if not solution.found or solution.x is None or solution.z is None:

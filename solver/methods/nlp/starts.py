@@ -19,6 +19,7 @@ from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.nlp.instance import Start
 from solver.methods.nlp.tolerances import RELAXED_SAMPLES, RELAXED_SWINGS
+from solver.problem.retreats import even_retreats
 from solver.robots.model import Array
 from solver.tolerances import NEAR_FEASIBLE_RAD
 
@@ -73,8 +74,8 @@ def corners(task: ApproachTask) -> list[Corner]:
 
 def start_at(task: ApproachTask, tool_side: int, branch: int | None, thinning: Array) -> Start:
     """A start from a thinning posture, its standby straight behind it on its branch."""
-    retreats = np.array([0.0, task.options.standoff_m])
-    rows = retreat_rows(task.robot, task.tool, tuple(thinning), branch, retreats[::-1])
+    ends = even_retreats(task.options, 2)
+    rows = retreat_rows(task.robot, task.tool, tuple(thinning), branch, ends)
     return _start(task, tool_side, rows[::-1])
 
 
@@ -92,7 +93,7 @@ def nearest_starts(task: ApproachTask, count: int) -> list[Start]:
                 margin = float(margins[branch, best])
                 if margin > -NEAR_FEASIBLE_RAD:
                     peaks.append((-margin, k, side, branch, float(angles[best])))
-    ends = np.array([task.options.standoff_m, 0.0])
+    ends = even_retreats(task.options, 2)
     starts = []
     for _, k, side, branch, angle in sorted(peaks)[:count]:
         rows = tasks[k].postures(angle, side, branch, ends)
@@ -110,7 +111,7 @@ def _start(task: ApproachTask, tool_side: int, postures: Array) -> Start:
         angle - math.pi,
         angle + math.pi,
         postures,
-        np.array([0.0, task.options.standoff_m]),
+        even_retreats(task.options, 2)[::-1],
         seen.strike_m,
         seen.swing_rad,
     )

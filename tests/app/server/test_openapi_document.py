@@ -19,14 +19,22 @@ from hardware.end_effector.output import END_EFFECTORS
 from solver import InvalidProblem, Options, Problem
 from solver.comparison.run import MAXIMUM_REPEATS, MOST_REPEATS
 from solver.comparison.summary import FAILURE_CHARGE
-from solver.frames.checks import FURTHEST_M
-from solver.frames.point_pairs import LEAST_PAIRS, MOST_PAIRS
-from solver.frames.tolerances import SHORTEST_DIRECTION
-from solver.frames.transforms import ORTHONORMAL, UNIT_QUATERNION
+from solver.frames.tolerances import (
+    FURTHEST_M,
+    LEAST_PAIRS,
+    MOST_PAIRS,
+    ORTHONORMAL,
+    SHORTEST_DIRECTION,
+    UNIT_QUATERNION,
+)
 from solver.problem.options import MOST_WEIGHT, RANGES
 from solver.problem.solution import REASON_CODES
-from solver.problem.thinning import LONGEST_SEGMENT_M
-from solver.problem.tolerances import LARGEST_STD_REACHES, SAME_POINT_M, UNIT_MISTAKE_REACHES
+from solver.problem.tolerances import (
+    LARGEST_STD_REACHES,
+    LONGEST_SEGMENT_M,
+    SAME_POINT_M,
+    UNIT_MISTAKE_REACHES,
+)
 
 Schema = dict[str, Any]
 

@@ -4,7 +4,7 @@ import pytest
 
 from hardware.servos.instances import instance_names, load_instance
 from solver.exceptions import InvalidRobot, UnknownRobot
-from solver.robots.model import load_robot, robot_names
+from solver.robots.files import load_robot, robot_names
 
 
 def test_every_model_is_an_instance_and_an_arm_has_a_simulated_twin() -> None:

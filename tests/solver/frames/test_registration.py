@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from solver import InvalidProblem
-from solver.frames.point_pairs import MOST_PAIRS, PointPair
+from solver.frames.point_pairs import PointPair
 from solver.frames.registration import check, register
+from solver.frames.tolerances import MOST_PAIRS
 from solver.frames.transforms import RigidTransform, transform_from_rotation
 from solver.robots.model import Array
 

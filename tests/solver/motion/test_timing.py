@@ -60,8 +60,3 @@ def test_no_motion_is_one_row() -> None:
     motion = time_joint_line(ROBOT, np.zeros(6), np.zeros(6), 0.02)
     assert motion.duration_s == 0.0
     assert motion.joints.shape == (1, 6)
-
-
-def test_ratios_see_a_start_that_is_not_from_rest() -> None:
-    times, rows = np.array([0.0, 1.0]), np.array([[0.0], [1.0]])
-    assert rate_ratios(times, rows, np.array([0.5]), np.array([1.0])) == (2.0, 2.0)

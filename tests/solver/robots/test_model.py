@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from solver import InvalidRobot, Robot, UnknownRobot, load_robot, robot_names
-from solver.robots.model import parse_robot
+from solver.robots.files import parse_robot
 
 DOCUMENT = (resources.files("solver.robots") / "tabletop.toml").read_text()
 RAIL = (resources.files("solver.robots") / "puma560_rail.toml").read_text()
@@ -37,6 +37,16 @@ def test_every_shipped_robot_loads_and_is_hashable() -> None:
 def test_limits_cannot_be_written_to(tabletop: Robot) -> None:
     with pytest.raises(ValueError, match="read-only"):
         tabletop.lower[0] = 0.0
+
+
+def test_a_margin_draws_in_what_turns_and_leaves_what_slides(tabletop: Robot) -> None:
+    lower, upper = tabletop.limits_within(0.1)
+    np.testing.assert_array_equal(lower, tabletop.lower + 0.1)
+    np.testing.assert_array_equal(upper, tabletop.upper - 0.1)
+    rail = load_robot("puma560_rail")
+    lower, upper = rail.limits_within(0.1)
+    assert (lower[0], upper[0]) == (rail.lower[0], rail.upper[0])
+    np.testing.assert_array_equal(lower[1:], rail.lower[1:] + 0.1)
 
 
 def test_unknown_robot_names_the_known_ones() -> None:

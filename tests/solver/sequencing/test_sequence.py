@@ -7,56 +7,9 @@ import pytest
 
 from bench.order_references import even_ladder_effort, greedy_effort
 from solver import Options, Problem, Robot, Target
-from solver.approach.arcs.of_problem import feasible_arcs
-from solver.approach.task.packing import packed_problem
-from solver.sequencing.batch import Batch
-from solver.sequencing.gather import gather
-from solver.sequencing.ladder_graph import refined_ladder
-from solver.sequencing.ordering import coarse_nodes
-from solver.sequencing.polish import polished
 from solver.sequencing.sequence import least_chain, least_order, sequence
 from tests.solver.problems import DATA_SET_3, random_targets
-
-
-def batch_of(robot: Robot, targets: list[Target], **options: object) -> tuple[Batch, list[Target]]:
-    """The batch of those targets that have an arc, and those targets."""
-    problem = Problem(robot, targets, options=Options(**options))  # type: ignore[arg-type]
-    found = feasible_arcs(problem)
-    reached = [k for k, target in enumerate(targets) if found[target.id]]
-    arcs = [found[targets[k].id] for k in reached]
-    batch = gather(problem, packed_problem(problem)[:, reached], arcs)
-    return batch, [targets[k] for k in reached]
-
-
-def plain_ladder(batch: Batch, order: list[int], step: float) -> float:
-    """The ladder of even angles written out with NumPy."""
-    nodes = coarse_nodes(batch, step)
-    reached, before = np.zeros(1), nodes.start
-    for k in order:
-        own = slice(nodes.first[k], nodes.first[k + 1])
-        change = np.abs(nodes.thinning[:, None, own] - before[:, :, None])
-        efforts = (change**2 if nodes.squared else change).sum(axis=0)
-        reached, before = (reached[:, None] + efforts).min(axis=0), nodes.standby[:, own]
-    return float(reached.min())
-
-
-@pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_unrefined_ladder_is_the_cheapest_of_all_chains(tabletop: Robot, norm: str) -> None:
-    batch, targets = batch_of(tabletop, random_targets(seed=61, count=12), norm=norm)
-    order = np.arange(min(3, len(targets)))
-    nodes = coarse_nodes(batch, 0.5)
-    layers = [range(nodes.first[k], nodes.first[k + 1]) for k in order]
-    best = np.inf
-    for chain in itertools.product(*layers):
-        before, total = nodes.start[:, 0], 0.0
-        for n in chain:
-            change = np.abs(nodes.thinning[:, n] - before)
-            total += float((change**2 if nodes.squared else change).sum())
-            before = nodes.standby[:, n]
-        best = min(best, total)
-    assert len(order) == 3
-    _, _, effort = refined_ladder(batch, order, 0.5, 16, 0)
-    assert effort == pytest.approx(best, rel=1e-12)
+from tests.solver.sequencing.batches import batch_of, plain_ladder
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
@@ -72,20 +25,6 @@ def test_no_dearer_than_a_ladder_of_1440_angles(
         assert len(order) >= 15
         fine = plain_ladder(batch, order, 2 * np.pi / 1440)
         assert least_chain(batch, np.array(order)).effort <= fine
-
-
-@pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_every_round_and_the_polish_only_gain(tabletop: Robot, norm: str) -> None:
-    batch, targets = batch_of(tabletop, random_targets(seed=65, count=60), norm=norm)
-    order = np.arange(len(targets))
-    efforts = []
-    for rounds in range(4):
-        arcs, angles, effort = refined_ladder(batch, order, 0.1, 8, rounds)
-        efforts.append(effort)
-    assert efforts == sorted(efforts, reverse=True)
-    moved, gained = polished(batch, arcs, angles)
-    assert gained < efforts[-1]
-    assert np.all((batch.arc_lower[arcs] <= moved) & (moved <= batch.arc_upper[arcs]))
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])

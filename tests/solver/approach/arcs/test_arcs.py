@@ -1,6 +1,5 @@
 """Feasible arcs against dense sweeps of the exact margin."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -10,7 +9,6 @@ from numpy.typing import NDArray
 
 from solver import Options, Problem, Robot, Target
 from solver.approach.arcs.arcs import sample_angles_of, task_arcs
-from solver.approach.arcs.of_problem import feasible_arcs
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.problem.solution import Arc
 from solver.robots.model import Array
@@ -116,25 +114,3 @@ def test_an_arc_ends_where_its_limit_says(tabletop: Robot) -> None:
                     assert within[:, joint].all() == wanted
                     seen.add(limit)
     assert len(seen) >= 3
-
-
-def test_a_batch_has_the_arcs_of_its_targets_in_any_order(tabletop: Robot) -> None:
-    targets = random_targets(44, 40)
-    problem = Problem(tabletop, targets, options=Options(symmetric_tool=True, include=("path",)))
-    found = feasible_arcs(problem)
-    backwards = feasible_arcs(replace(problem, targets=targets[::-1]))
-    assert found == backwards
-    for target in targets:
-        alone = task_arcs(approach_task(problem, target, problem.start))
-        assert sorted(map(repr, found[target.id])) == sorted(map(repr, alone))
-    assert sum(map(len, found.values())) > 40
-
-
-def test_joints_without_limits_have_whole_turns(tabletop: Robot) -> None:
-    joints = tuple(replace(joint, lower=-4.0, upper=4.0) for joint in tabletop.joints)
-    free = replace(tabletop, joints=joints)
-    target = Target("1", (0.17, 0.0, 0.2), (0.15, 0.0, 0.09))
-    arcs = feasible_arcs(Problem(free, [target]))["1"]
-    whole = [arc for arc in arcs if arc.upper_rad - arc.lower_rad >= 2 * math.pi - 1e-12]
-    assert whole
-    assert all(arc.lower_limit is None and arc.upper_limit is None for arc in whole)

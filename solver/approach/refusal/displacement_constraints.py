@@ -1,0 +1,190 @@
+"""Kernels: what a displaced target has to meet, as lengths with their gradients.
+
+The joint limits and the reach at some rows of the cut-in, and the travel between two rows. Joint
+constraints are multiplied by half the arm's length, so that all are lengths [m].
+"""
+
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.approach.refusal.tolerances import (
+    NEAREST_INSIDE_M,
+    NEAREST_INSIDE_RAD,
+    NEAREST_JUMP_SHARE,
+    NEAREST_STEEPEST,
+)
+from solver.approach.task.constraints import LIMITS, REACH
+from solver.approach.task.feasibility import CutInTask, posture, tool_axes
+from solver.approach.uncertainty.sensitivity import joint_rates
+from solver.compiled import kernel
+from solver.kinematics.spherical_wrist import wrap
+from solver.robots.model import Array
+from solver.tolerances import JOINT_RATE_RAD_M, LEAST_DIVISOR
+
+
+class Watched(NamedTuple):
+    """What a displacement has to meet.
+
+    Attributes:
+        rows: rows of the cut-in whose limits count, the first `rows_count`, thinning first.
+        jumps: row and joint of each jump that counts, between that row and the next one, the first
+            `jumps_count`, shape (n, 2).
+        spread: displacement that every limit has to bear [m].
+    """
+
+    rows: NDArray[np.int64]
+    rows_count: int
+    jumps: NDArray[np.int64]
+    jumps_count: int
+    spread: float
+
+
+class Scratch(NamedTuple):
+    """Arrays that the inner loops write to and forget."""
+
+    axes: Array
+    near: Array
+    q: Array
+    next_q: Array
+    rates: Array
+    next_rates: Array
+    reach_rates: Array
+
+
+@kernel
+def scratch_arrays():
+    """New scratch."""
+    return Scratch(
+        np.empty((3, 3)),
+        np.empty(6),
+        np.empty(6),
+        np.empty(6),
+        np.empty((6, 4)),
+        np.empty((6, 4)),
+        np.empty(4),
+    )
+
+
+@kernel
+def copy_at(task, position):
+    """The same task with its target at a position of its own, which may be written."""
+    return CutInTask(
+        task.geometry,
+        task.lower,
+        task.upper,
+        position,
+        task.y_axis,
+        task.outward,
+        task.sideways,
+        task.retreats,
+        task.reference,
+        task.weights,
+        task.squared,
+    )
+
+
+@kernel
+def row_constraints(task, turn, retreat, branch, spread, scratch, values, gradients):
+    """One row's constraints as distances [m], >= 0 where met, and their gradients.
+
+    Args:
+        task: the task, its target where it is displaced to.
+        turn: the branch direction, about which the approach angle turns.
+        retreat: distance of the row behind the target [m].
+        branch: inverse kinematics branch.
+        spread: displacement that every limit has to bear [m]. Where it is above 0 the straight
+            wrist is a limit too.
+        scratch: holds the tool's axes, and as `near` the posture on whose turns the row is.
+        values: written, shape (13,); the joints of a row out of reach are those at its edge.
+        gradients: written, shape (13, 4): by displacement [m/m] and approach angle [m/rad].
+    """
+    q, near, rates, reach_rates = scratch.q, scratch.near, scratch.rates, scratch.reach_rates
+    reach = posture(task, scratch.axes, retreat, branch, q)
+    lever = retreat + task.geometry.tool_length
+    joint_rates(task.geometry, q, scratch.axes, lever, turn, rates, reach_rates)
+    scale = (task.geometry.a2 + task.geometry.l3) / 2
+    steepest = NEAREST_STEEPEST if reach < 0 else math.inf
+    for i in range(6):
+        q[i] = near[i] + wrap(q[i] - near[i])
+        slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
+        flat = scale * min(1.0, steepest / max(slope * scale, LEAST_DIVISOR))
+        low, high = task.lower[i], task.upper[i]
+        if i == 4 and spread > 0:
+            offset = task.geometry.offsets[4]
+            below = math.pi * math.floor((q[4] + offset) / math.pi) - offset
+            low, high = max(low, below), min(high, below + math.pi)
+        values[2 * i] = scale * (q[i] - low - NEAREST_INSIDE_RAD - spread * slope)
+        values[2 * i + 1] = scale * (high - q[i] - NEAREST_INSIDE_RAD - spread * slope)
+        for k in range(4):
+            gradients[2 * i, k] = flat * rates[i, k]
+            gradients[2 * i + 1, k] = -flat * rates[i, k]
+    values[2 * REACH] = reach - NEAREST_INSIDE_M - spread
+    for k in range(4):
+        gradients[2 * REACH, k] = reach_rates[k]
+
+
+@kernel
+def jump_constraint(task, turn, row, joint, branch, scratch, gradient):
+    """What is left of the travel that one joint may make from a row to the next one, as a length.
+
+    Writes the gradient, shape (4,); returns the length [m].
+    """
+    q, next_q, rates, next_rates = scratch.q, scratch.next_q, scratch.rates, scratch.next_rates
+    retreat, after = task.retreats[row], task.retreats[row + 1]
+    length = task.geometry.tool_length
+    scale = (task.geometry.a2 + task.geometry.l3) / 2
+    posture(task, scratch.axes, retreat, branch, q)
+    joint_rates(task.geometry, q, scratch.axes, retreat + length, turn, rates, scratch.reach_rates)
+    posture(task, scratch.axes, after, branch, next_q)
+    joint_rates(
+        task.geometry, next_q, scratch.axes, after + length, turn, next_rates, scratch.reach_rates
+    )
+    travel = wrap(q[joint] - next_q[joint])
+    sign = 1.0 if travel >= 0 else -1.0
+    for k in range(4):
+        gradient[k] = -scale * sign * (rates[joint, k] - next_rates[joint, k])
+    allowed = (1.0 - NEAREST_JUMP_SHARE) * JOINT_RATE_RAD_M * (retreat - after)
+    return scale * (allowed - abs(travel))
+
+
+@kernel
+def thinning_turns(task, axes, branch, near):
+    """Writes to `near` the posture at the target on the turns that `thinning` chooses."""
+    reach = posture(task, axes, 0.0, branch, near)
+    for i in range(6):
+        for turn in (-2 * math.pi, 2 * math.pi):
+            other = near[i] + turn
+            inside = task.lower[i] <= other <= task.upper[i]
+            if inside and abs(other - task.reference[i]) < abs(near[i] - task.reference[i]):
+                near[i] = other
+    return reach
+
+
+@kernel
+def constraints(task, origin, x, turn, branch, watched, scratch, values, gradients):
+    """All watched constraints at x = (delta, angle); moves the task's target there."""
+    for i in range(3):
+        task.position[i] = origin[i] + x[i]
+    tool_axes(task, x[3], scratch.axes)
+    thinning_turns(task, scratch.axes, branch, scratch.near)
+    count = watched.rows_count
+    for w in range(count):
+        row_constraints(
+            task,
+            turn,
+            task.retreats[watched.rows[w]],
+            branch,
+            watched.spread,
+            scratch,
+            values[LIMITS * w : LIMITS * (w + 1)],
+            gradients[LIMITS * w : LIMITS * (w + 1)],
+        )
+    for w in range(watched.jumps_count):
+        row, joint = watched.jumps[w]
+        j = LIMITS * count + w
+        values[j] = jump_constraint(task, turn, row, joint, branch, scratch, gradients[j])
