@@ -6,8 +6,9 @@ What one room alone uses stands in that room's own `tolerances.py`.
 from typing import Final
 
 LIMIT_EXCESS_RAD: Final = 1e-9
-"""A joint beyond its limit by more is refused [rad]. Rounding of the closed form is 1e-14; an
-interior-point solver relaxes bounds by 1e-8, which is why its answers are polished."""
+"""A joint beyond its limit by more is refused [rad]. Rounding of the closed form is 1e-14; a
+programme ends within its own tolerance of the equations, which is why its answers are put back on
+the closed form."""
 
 POSITION_ERROR_M: Final = 1e-6
 """Tool centre point off its place [m]: a thousandth of a servo tick's effect on this arm."""

@@ -21,7 +21,8 @@ import numpy as np
 from bench.subjects.large_batch import memory_mib
 from bench.targets import random_set
 from solver import solve
-from solver.approach.optimum.batch import NO_BRANCH, closed_form_optima
+from solver.approach.optimum.batch import closed_form_optima
+from solver.approach.optimum.batch_search import NO_BRANCH
 size, whole = int(sys.argv[1]), sys.argv[2] == "plan"
 options = {"method": "ssas", "order": "independent", "include": ("path",)}
 

@@ -29,28 +29,30 @@ CHAIN_NEWTON_STEPS: Final = 6
 """Newton steps for one width at most."""
 
 CHAIN_HALVINGS: Final = 20
-"""How often such a step is halved before it is given up: a millionth of it."""
+"""How often a Newton step is halved before it is given up: a millionth of it is left."""
 
 CHAIN_DAMPING_RELATIVE: Final = 1e-12
-"""What is added to the curvature of each angle, as a share of it: more than rounding takes away in
-the elimination, so that pivots stay positive."""
+"""What is added to the model's curvature in each angle, as a share of it: more than rounding takes
+away in the elimination, so that pivots stay positive."""
 
 CHAIN_DAMPING: Final = 1e-9
-"""What is added besides [effort / rad2]: an angle that no joint's travel depends on has none."""
+"""What is added to it besides [effort / rad2]: an angle that no joint's travel depends on has
+none."""
 
 CHAIN_ROUNDING_RELATIVE: Final = 1e-13
-"""A Newton step that lowers the model's effort by less, relative, was the last with l2: the rest is
-rounding."""
+"""A Newton step that lowers the model's effort by less, relative, was the last for a width with l2:
+the rest is rounding."""
 
 CHAIN_WORTH_MU: Final = 0.1
-"""With l1 the same as a share of the width: what rounding the norm off changes by more."""
+"""The same with l1, as a share of the width: rounding the norm off within it changes more."""
 
 ANNEAL_HOT: Final = 0.3
 """Temperature at the start of the search for an order, as a share of the mean effort of a target: a
 move that costs that much is accepted every third time."""
 
 ANNEAL_COLD: Final = 0.005
-"""Temperature at its end, the same share: hardly a move that costs anything is accepted."""
+"""Temperature at the end of that search, as the same share: hardly a move that costs anything is
+accepted."""
 
 ANNEAL_WINDOW: Final = 3
 """Places on each side of a change whose approaches are chosen anew."""
@@ -78,10 +80,10 @@ ANNEAL_TRIALS: Final = 10_000
 """Moves tried for each target when an order is searched, about 1 us each."""
 
 EXACT_TARGETS: Final = 8
-"""Up to so many targets the order is exact."""
+"""Up to so many targets every order is counted: memory and time double with each further one."""
 
 EXACT_STEP_RAD: Final = 0.0525
-"""Distance of the approach angles when it is [rad]."""
+"""Distance of the approach angles that every order is counted with [rad]."""
 
 EXACT_OPEN: Final = 64
 """Partial orders that may be open for each order kept and each target, which bounds the memory:

@@ -12,7 +12,7 @@ from solver.problem.solution import Trajectory, Transfer
 from solver.robots.model import Array
 from solver.tolerances import LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_POSTURE_RAD
 from solver.verification.residual import Residual
-from solver.verification.tolerances import RATE_EXCESS_RELATIVE
+from solver.verification.tolerances import RATE_EXCESS_RELATIVE, SAME_TIME_S
 
 SEGMENTS = ("transfer", "cut_in", "dwell", "retreat")
 
@@ -87,7 +87,7 @@ def motion_residuals(
     yield Residual("trajectory_limit_excess_rad", outside, LIMIT_EXCESS_RAD)
     dwell_times, dwell_rows = segment_rows(trajectory, "dwell")
     waited = float(dwell_times[-1] - dwell_times[0])
-    yield Residual("dwell_s", abs(waited - problem.options.dwell_s), SAME_POSTURE_RAD)
+    yield Residual("dwell_s", abs(waited - problem.options.dwell_s), SAME_TIME_S)
     still = float(np.abs(dwell_rows - thinning).max())
     yield Residual("dwell_moves_rad", still, SAME_POSTURE_RAD)
     for name in ("cut_in", "retreat"):

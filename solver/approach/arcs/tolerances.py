@@ -7,8 +7,8 @@ ARC_END_RAD: Final = 1e-15
 reach joints turn with the square root of the angle: 1e-12 would leave 1e-6 of the effort there."""
 
 CLEAR_MARGIN: Final = 0.1
-"""Margin [difference of cosines, or m] at both ends of a cell above which a joint is not
-looked at in each row: it would have to turn back within 5 degrees of approach angle."""
+"""Margin [difference of cosines, or m] at both ends of a cell above which a joint is not looked at
+in each row: it would have to turn back within 5 degrees of approach angle."""
 
 ROUND_TURN_COSINE: Final = -0.6
 """Cosine of half a joint's range below which it can be inside its limits at both ends of a cell

@@ -25,8 +25,8 @@ SLOPE_SHARE: Final = 1e-5
 """Share of an interval over which it is looked whether effort falls at its ends."""
 
 KINK_TRAVEL_RAD: Final = 1e-13
-"""Travel from its reference at which a joint passes it [rad]: ten times the closed
-form's rounding."""
+"""Travel from its reference below which a joint is at it [rad]: ten times the closed form's
+rounding."""
 
 KINK_ANGLE_RAD: Final = 1e-12
 """Width of the bracket of such an angle below which it is found [rad]: a hundredth of

@@ -8,7 +8,7 @@ displacement the feasible arc is often a point; this opens it to the width that 
 for about 0.01 mm of displacement."""
 
 NEAREST_INSIDE_M: Final = 1e-5
-"""The same for the reach [m]."""
+"""How far inside the reach the nearest displacement is put [m], for the same reason."""
 
 NEAREST_INSIDE_ARC_RAD: Final = 1e-6
 """How far inside its arc the nearest angle is put [rad], so that digits lost on the way to another
@@ -88,7 +88,7 @@ NEAREST_CUTS: Final = 10
 """How often a step that does not lower the merit function is shortened."""
 
 NEAREST_CUT: Final = 2.5
-"""How many times shorter each time; after ten times it is a ten-thousandth."""
+"""Factor by which such a step is shortened each time; after ten times a ten-thousandth is left."""
 
 NEAREST_DAMPING: Final = 0.2
 """Least curvature along a step as a share of the approximate Hessian's there (Powell's damping), so
@@ -101,5 +101,5 @@ NEAREST_FLAT_REACH: Final = 1e-12
 """Least squared slope [m2/m2] of the reach that such a step is divided by: no division by zero."""
 
 NEAREST_WIDENING: Final = 1.1
-"""By how many times what is missing the displacement that has to be borne is widened: limits bend,
-and the widening itself costs some."""
+"""Factor on what is missing, by which the displacement that has to be borne is widened: limits
+bend, and one that just misses would miss again."""
