@@ -3,8 +3,9 @@
 # folder of tests, or one of the sources, whose tests lie in the same place under tests/.
 #
 # Two cores, so what mostly waits shares them with what computes: tests that keep time with clocks
-# run one by one, and beside them all others, two at a time and at a low priority. It is not the
-# lowest, so that jobs, whose processes are nicer than their service, get their share among them.
+# run one by one, and beside them all others, three at a time, as most wait now and then, and at a
+# low priority. It is not the lowest, so that jobs, whose processes are nicer than their service, get
+# their share among them.
 set -u
 pytest=$1/pytest
 shift
@@ -29,7 +30,7 @@ shared=$(mktemp)
 trap 'rm -f "$shared"' EXIT
 failed=0
 
-nice -n 14 "$pytest" -n 2 --dist loadfile --no-loadscope-reorder -m "not alone" \
+nice -n 14 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
     tests --ignore tests/hardware >"$shared" 2>&1 &
 "$pytest" -m alone tests --ignore tests/hardware || failed=1
 "$pytest" tests/hardware || failed=1

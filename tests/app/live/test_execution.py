@@ -75,7 +75,8 @@ class Rig:
         return self.execution(location)
 
     def until_segment(self, location: str, segment: str) -> None:
-        self.until(location, lambda execution: execution.get("segment") == segment)
+        # Some are short.
+        wait_until(lambda: self.execution(location).get("segment") == segment, LONG_S, poll_s=0.02)
 
     def until_ended(self, location: str) -> Body:
         return self.until(

@@ -82,7 +82,7 @@ def test_no_process_is_left_behind(tmp_path: Path) -> None:
         assert len(workers) == 2
     wait_until(lambda: not any(map(lives, workers)), 10)
 
-    with running_server(tmp_path / "killed", PRUNUS_WORKERS="2") as server:
+    with running_server(tmp_path / "killed") as server:
         workers = server.children()
         server.process.kill()
         server.process.wait()

@@ -20,7 +20,7 @@ from tests.app.conftest import Server, assert_problem, running_server, wait_unti
 Body = dict[str, Any]
 QUICK: Body = {"scenario": "strawberry", "methods": ["as", "ncos"], "repeats": 1}
 # A minute and more, if nobody ends it.
-LONG: Body = {"scenario": "strawberry", "methods": ["ncos"], "repeats": 1000}
+LONG: Body = {"scenario": "strawberry", "methods": ["ncos"], "repeats": 400}
 COMPLETE_S = 120
 
 

@@ -226,22 +226,15 @@ def test_a_job_process_that_dies_is_started_again(jobs: Server) -> None:
     assert jobs.client.delete(f"/v1/jobs/{job['id']}").json()["status"] == "canceled"
 
 
-@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM])
-def test_a_job_goes_on_behind_its_last_part(tmp_path: Path, kind: signal.Signals) -> None:
+def test_a_job_goes_on_behind_its_last_part(tmp_path: Path) -> None:
+    """Through two deaths: killed, and stopped."""
     log = tmp_path / "log"
     with log.open("w") as stderr:
         with running_server(tmp_path / "data", stderr=stderr) as server:
             job = begun(server, batch(200, "ncos"))
-            wait_until(lambda: job_of(server, job["id"])["done"] >= 50, JOB_S)
-            # Whoever reads along must not take what comes until then for all.
-            path, following = f"/v1/jobs/{job['id']}/results", {"Accept": "application/x-ndjson"}
-            with server.client.stream("GET", path, headers=following) as answer:
-                coming = answer.iter_lines()
-                next(coming)
-                server.process.send_signal(kind)
-                with pytest.raises(httpx2.RemoteProtocolError):
-                    list(coming)
-            server.process.wait(60)
+            end_over_job(server, job, 50, signal.SIGKILL)
+        with running_server(tmp_path / "data", stderr=stderr) as server:
+            end_over_job(server, job, 100, signal.SIGTERM)
         with running_server(tmp_path / "data", stderr=stderr) as server:
             finished = ended(server, job["id"])
             assert (finished["status"], finished["done"]) == ("completed", 200)
@@ -258,6 +251,21 @@ def test_a_job_goes_on_behind_its_last_part(tmp_path: Path, kind: signal.Signals
             assert entry["part"] not in stored, "stored again"
             stored.add(entry["part"])
     assert stored == set(range(4))
+
+
+def end_over_job(server: Server, job: Body, done: int, kind: signal.Signals) -> None:
+    """End the service when so many targets are done, while somebody reads the results along."""
+    wait_until(lambda: job_of(server, job["id"])["done"] >= done, JOB_S)
+    assert job_of(server, job["id"])["done"] < job["targets"], "it was over too soon"
+    # Whoever reads along must not take what comes until then for all.
+    path, following = f"/v1/jobs/{job['id']}/results", {"Accept": "application/x-ndjson"}
+    with server.client.stream("GET", path, headers=following) as answer:
+        coming = answer.iter_lines()
+        next(coming)
+        server.process.send_signal(kind)
+        with pytest.raises(httpx2.RemoteProtocolError):
+            list(coming)
+    server.process.wait(60)
 
 
 def test_a_process_that_was_ended_after_it_had_loaded_its_job_is_a_lost_one() -> None:
