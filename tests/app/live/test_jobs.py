@@ -1,4 +1,3 @@
-import asyncio
 import contextlib
 import json
 import os
@@ -11,16 +10,7 @@ from typing import Any
 
 import httpx2
 import pytest
-from sqlalchemy import URL
-from sqlalchemy.exc import OperationalError
 
-from app.observation.logs import LogOptions
-from app.observation.metrics import Metrics
-from app.services.jobs.process import JobProcess
-from app.services.jobs.service import JobService
-from app.services.plans.batch_reading import JobOrder
-from app.services.solving.process import SolverLost
-from app.store import JobStore, open_engine
 from tests.app.conftest import JOB_S, Server, assert_problem, running_server, wait_until
 from tests.solver.problems import random_targets
 
@@ -266,39 +256,3 @@ def end_over_job(server: Server, job: Body, done: int, kind: signal.Signals) -> 
         with pytest.raises(httpx2.RemoteProtocolError):
             list(coming)
     server.process.wait(60)
-
-
-def test_a_process_that_was_ended_after_it_had_loaded_its_job_is_a_lost_one() -> None:
-    async def work() -> None:
-        process = JobProcess(LogOptions())
-        await process.end()
-        with pytest.raises(SolverLost):
-            await process.part("0" * 32, 0, 0, None)
-
-    asyncio.run(work())
-
-
-def test_a_job_whose_commit_is_in_doubt_is_worked_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    engine = open_engine(URL.create("sqlite", database=str(tmp_path / "it.sqlite3")))
-    store = JobStore(engine)
-    add = store.add
-
-    def add_and_lose_the_answer(*args: Any, **kwargs: Any) -> None:
-        add(*args, **kwargs)
-        raise OperationalError("COMMIT", {}, Exception("the connection was lost"))
-
-    monkeypatch.setattr(store, "add", add_and_lose_the_answer)
-
-    async def create() -> int:
-        service = JobService(
-            store, workers=1, most_waiting=3, logs=LogOptions(), measures=Metrics("1"),
-            stopping=asyncio.Event(),
-        )  # fmt: skip
-        with pytest.raises(OperationalError):
-            await service.create(JobOrder("tabletop", 2, "{}"), lambda _: "{}", None)
-        return service._queue.qsize()
-
-    assert asyncio.run(create()) == len(store.active()) == 1
-    engine.dispose()
