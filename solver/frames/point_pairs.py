@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.checks import position_faults
@@ -101,6 +100,8 @@ class Fit:
     def is_scaled(self) -> bool:
         """Whether the scale is off one by more than the noise explains."""
         freedom = 3 * self.count - 7
+        from scipy.special import stdtrit  # as slow to import as rotations: transforms.py
+
         quantile = float(stdtrit(freedom, 1.0 - SCALE_FALSE_ALARM / 2.0))
         extent = math.hypot(*self.base_spreads_m) * math.sqrt(self.count)
         return abs(math.log(self.scale)) > max(SCALE_LEAST, quantile * self.noise_m / extent)

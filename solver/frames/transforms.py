@@ -9,9 +9,9 @@ base, and the rotation that turns directions of the frame into directions of the
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.checks import position_faults, vector_fault
@@ -23,6 +23,9 @@ from solver.frames.tolerances import (
     UNIT_QUATERNION,
 )
 from solver.robots.model import Array
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True)
@@ -40,13 +43,13 @@ class RigidTransform:
     @property
     def rotation(self) -> Array:
         """The rotation as a matrix, shape (3, 3); its columns are the frame's axes."""
-        return np.asarray(Rotation.from_quat(self.quaternion_xyzw).as_matrix())
+        return np.asarray(_from_quaternion(self.quaternion_xyzw).as_matrix())
 
     @property
     def inverse(self) -> "RigidTransform":
         """The other frame in this one."""
         back = self.rotation.T
-        return _transform(-back @ np.array(self.position_m), Rotation.from_matrix(back))
+        return _transform(-back @ np.array(self.position_m), _from_matrix(back))
 
     def points(self, points_m: Array) -> Array:
         """Points of the frame in the other one, shape (n, 3) [m]."""
@@ -101,7 +104,7 @@ def transform_from_quaternion(
     if faults:
         raise InvalidProblem(tuple(faults))
     given = np.array(quaternion_xyzw, dtype=float)
-    kept = Rotation.from_quat(given)
+    kept = _from_quaternion(given)
     signed = kept.as_quat() if given @ kept.as_quat() > 0 else -kept.as_quat()
     return _transform(position_m, kept), _about(position_m, given, signed)
 
@@ -128,7 +131,7 @@ def transform_from_matrix(
     given = np.array(rotation_matrix, dtype=float)
     left, _, right = np.linalg.svd(given)
     kept = left @ right
-    return _transform(position_m, Rotation.from_matrix(kept)), _about(position_m, given, kept)
+    return _transform(position_m, _from_matrix(kept)), _about(position_m, given, kept)
 
 
 def _matrix_fault(rows: Sequence[Sequence[float]]) -> str:
@@ -152,10 +155,23 @@ def _matrix_fault(rows: Sequence[Sequence[float]]) -> str:
 
 def transform_from_rotation(position_m: Array, rotation: Array) -> RigidTransform:
     """A pose from an origin [m] and an exact rotation, shape (3, 3)."""
-    return _transform(position_m, Rotation.from_matrix(rotation))
+    return _transform(position_m, _from_matrix(rotation))
 
 
-def _transform(position_m: Sequence[float] | Array, rotation: Rotation) -> RigidTransform:
+# SciPy's rotations take a third of a second to import, in every process, and most know no frame.
+def _from_quaternion(xyzw: Sequence[float] | Array) -> "Rotation":
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_quat(xyzw)
+
+
+def _from_matrix(rows: Array) -> "Rotation":
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_matrix(rows)
+
+
+def _transform(position_m: Sequence[float] | Array, rotation: "Rotation") -> RigidTransform:
     x, y, z = (float(value) for value in position_m)
     # Adding zero makes a negative zero a plain one.
     i, j, k, real = (float(value) + 0.0 for value in rotation.as_quat(canonical=True))

@@ -7,17 +7,15 @@ Lengths in metres, angles in radians, everything in the robot's base frame.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from solver.exceptions import Fault, InvalidProblem
+from solver.frames.transforms import NamedFrame
 from solver.kinematics.torque_weights import torque_weights
 from solver.problem.checks import problem_faults
 from solver.problem.options import FULL_ANSWER, FULL_ANSWER_TARGETS, Options
 from solver.problem.targets import Target
 from solver.robots.model import Robot, Tool
-
-if TYPE_CHECKING:  # rotations are SciPy's, which takes a third of a second to import
-    from solver.frames.transforms import NamedFrame
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,7 @@ class Problem:
     tool: Tool | str | None = None
     start_joints: Sequence[float] | None = None
     options: Options = field(default_factory=Options)
-    frame: "NamedFrame | None" = None
+    frame: NamedFrame | None = None
 
     def __post_init__(self) -> None:
         faults: list[Fault] = []

@@ -3,14 +3,11 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solver.frames.checks import direction_fault, position_faults
-
-if TYPE_CHECKING:  # rotations are SciPy's, which takes a third of a second to import
-    from solver.frames.transforms import RigidTransform
+from solver.frames.transforms import RigidTransform
 
 
 @dataclass(frozen=True)
@@ -31,7 +28,7 @@ class Target:
 
 
 def targets_in_base(
-    targets: Sequence[Target], base_from_frame: "RigidTransform"
+    targets: Sequence[Target], base_from_frame: RigidTransform
 ) -> tuple[Target, ...]:
     """Targets of a frame in the robot's base frame; branch directions come out as unit vectors.
 
