@@ -2,10 +2,9 @@
 # Tests: run_tests.sh FOLDER_OF_PYTEST [PLACE]...; without a place all of them. A place is a file or
 # folder of tests, or one of the sources, whose tests lie in the same place under tests/.
 #
-# Two cores, so what mostly waits shares them with what computes: tests that keep time with clocks
-# run one by one, and beside them all others, three at a time, as most wait now and then, and at a
-# low priority. It is not the lowest, so that jobs, whose processes are nicer than their service, get
-# their share among them.
+# Two cores and three lanes. Tests that keep time with clocks run one by one, before all others.
+# Services and commands, which wait now and then, run three at a time behind them, at a low priority
+# that leaves their jobs, whose processes are nicer still, a share. What only computes fills the rest.
 set -u
 pytest=$1/pytest
 shift
@@ -26,16 +25,21 @@ if [ $# -gt 0 ]; then
     exec "$pytest" "$@"
 fi
 
-shared=$(mktemp)
-trap 'rm -f "$shared"' EXIT
+waiting=$(mktemp)
+computing=$(mktemp)
+trap 'rm -f "$waiting" "$computing"' EXIT
 failed=0
 
 nice -n 14 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
-    tests --ignore tests/hardware >"$shared" 2>&1 &
+    tests/app tests/deploy tests/docs >"$waiting" 2>&1 &
+services=$!
+nice -n 19 "$pytest" tests/bench tests/contracts tests/solver >"$computing" 2>&1 &
+solver=$!
 # Named, as collecting all to leave most out takes ten seconds.
 # shellcheck disable=SC2046
 "$pytest" -m alone $(grep -rlw --include="*.py" "mark.alone" tests) || failed=1
 "$pytest" tests/hardware || failed=1
-wait $! || failed=1
-cat "$shared"
+wait $services || failed=1
+wait $solver || failed=1
+cat "$waiting" "$computing"
 exit $failed

@@ -8,7 +8,7 @@ from bench.service.memory import sample
 from bench.service.mixed import mixed_load
 from tests.app.conftest import Server
 
-DURATION_S = 12
+DURATION_S = 20
 MOST_GROWTH_KIB = 300 * 1024
 
 
@@ -22,8 +22,8 @@ def test_mixed_load(server: Server) -> None:
         sampling.cancel()
         client.close()
         assert tally.errors == 0, tally.notes
-        assert tally.done["plan"] > 20
-        assert tally.done["read"] > 10
+        assert tally.done["plan"] > DURATION_S / 3
+        assert tally.done["read"] > DURATION_S / 6
         assert tally.provoked
 
     asyncio.run(load())
