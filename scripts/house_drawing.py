@@ -39,7 +39,7 @@ LEGEND = (
     "Each band is a floor: a room imports only",
     "from the floors below its own.",
     "",
-    "Bold: a folder, and the folders in it. Thin: a file.",
+    "Bold: a folder, small under it those inside. Thin: a file.",
     "",
     "Arrow: imports. An import that follows",
     "from other arrows has none of its own.",

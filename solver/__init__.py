@@ -26,7 +26,7 @@ _HOMES: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
             "UnknownRobot",
             "UnsupportedKinematics",
         ),
-        "solver.planner.solve": ("solve",),
+        "solver.solving.solve": ("solve",),
         "solver.problem.options": ("Options",),
         "solver.problem.problem": ("Problem",),
         "solver.problem.solution": (
@@ -53,7 +53,7 @@ _HOMES: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "solver.robots.toml_writing": ("robot_to_toml",),
         "solver.urdf.reading": ("robot_from_urdf",),
         "solver.urdf.writing": ("robot_to_urdf",),
-        "solver.verification.residual": ("Residual", "Verification"),
+        "solver.verification.verdict": ("Residual", "Verification"),
         "solver.verification.verify": ("verify", "verify_plan"),
     }
 )

@@ -7,7 +7,6 @@ from solver.exceptions import (
     UnknownRobot,
     UnsupportedKinematics,
 )
-from solver.planner.solve import solve
 from solver.problem.options import Options
 from solver.problem.problem import Problem
 from solver.problem.solution import (
@@ -32,9 +31,10 @@ from solver.problem.thinning import (
 from solver.robots.files import load_robot, parse_robot, robot_names
 from solver.robots.model import Joint, Link, Robot, Tool
 from solver.robots.toml_writing import robot_to_toml
+from solver.solving.solve import solve
 from solver.urdf.reading import robot_from_urdf
 from solver.urdf.writing import robot_to_urdf
-from solver.verification.residual import Residual, Verification
+from solver.verification.verdict import Residual, Verification
 from solver.verification.verify import verify, verify_plan
 
 __all__ = [

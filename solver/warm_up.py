@@ -20,13 +20,13 @@ from solver.approach.numerical.warm_start import numerical_warm_start
 from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.registry import METHODS
-from solver.planner.solve import solve
 from solver.problem.options import NORMS, Options
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
 from solver.robots.files import load_robot, robot_names
 from solver.robots.model import Robot
 from solver.sequencing.tolerances import EXACT_TARGETS
+from solver.solving.solve import solve
 
 TELL_S: Final = 10.0
 """How often it is told how far the compilation is [s]: people give up on a minute of silence."""

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 from sqlalchemy import URL
 
-from app.commands.refusals import fail
+from app.commands.failing import fail
 from app.commands.settings import SettingsFile, settings_or_fail
 
 BUSY_TIMEOUT_S = 10.0

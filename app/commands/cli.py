@@ -9,7 +9,7 @@ import typer
 
 from app.commands.backup import backup
 from app.commands.compare import compare
-from app.commands.refusals import fail
+from app.commands.failing import fail
 from app.commands.robot import robot_commands
 from app.commands.settings import SettingsFile
 from app.commands.settings import settings as settings_command

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from app.commands.refusals import fail
+from app.commands.failing import fail
 
 if TYPE_CHECKING:
     from solver.comparison.contest import Contest

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from app.commands.refusals import fail
+from app.commands.failing import fail
 
 robot_commands = typer.Typer(
     help="Arms in and out: URDF files and model files.", no_args_is_help=True

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.commands.refusals import fail
+from app.commands.failing import fail
 
 if TYPE_CHECKING:
     from app.settings import Settings

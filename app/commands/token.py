@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.commands.refusals import fail
+from app.commands.failing import fail
 from app.commands.settings import SettingsFile, settings_or_fail
 
 if TYPE_CHECKING:

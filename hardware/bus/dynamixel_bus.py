@@ -24,7 +24,7 @@ from dynamixel_sdk import (
 )
 
 from hardware.bus.bus import StatusReply
-from hardware.bus.protocol import error_names
+from hardware.bus.packets import error_names
 from hardware.exceptions import (
     BusLost,
     CorruptPackets,

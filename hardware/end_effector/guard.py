@@ -11,48 +11,11 @@ import math
 import signal
 import sys
 import time
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from selectors import EVENT_READ, DefaultSelector
-from types import MappingProxyType
-from typing import Final, Protocol
 
-from hardware.clock import timestamp
+from hardware.end_effector.outputs import OUTPUTS, Output, word
 from hardware.tolerances import GUARD_S
-
-
-class Output(Protocol):
-    """A pin, a relay, a servo: something that is on or off and can tell which."""
-
-    def set(self, *, on: bool, why: str) -> None:
-        """Switch it."""
-
-    def is_on(self) -> bool:
-        """Read it back."""
-
-
-class SimulatedOutput:
-    """An output that writes each change to a file, one line: instant, state, why."""
-
-    def __init__(self, record: Path | None) -> None:
-        self._on = False
-        self._record = record
-
-    def set(self, *, on: bool, why: str) -> None:
-        """Switch it."""
-        self._on = on
-        if self._record is not None:
-            with self._record.open("a", encoding="utf-8") as file:
-                file.write(f"{timestamp()} {_word(on)} {why}\n")
-
-    def is_on(self) -> bool:
-        """Read it back."""
-        return self._on
-
-
-OUTPUTS: Final[Mapping[str, Callable[[Path | None], Output]]] = MappingProxyType(
-    {"simulated": SimulatedOutput}
-)
 
 
 def guard(output: Output) -> None:
@@ -81,11 +44,7 @@ def guard(output: Output) -> None:
 
 
 def _answer(number: str, output: Output) -> None:
-    print(number, _word(output.is_on()), flush=True)  # noqa: T201 - the answer
-
-
-def _word(on: bool) -> str:
-    return "on" if on else "off"
+    print(number, word(output.is_on()), flush=True)  # noqa: T201 - the answer
 
 
 def main(arguments: list[str]) -> None:

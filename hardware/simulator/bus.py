@@ -3,7 +3,7 @@
 import random
 from collections.abc import Iterator, Sequence
 
-from hardware.bus.protocol import BROADCAST_ID, SYNC_WRITE, InstructionPacket, PacketReader
+from hardware.bus.packets import BROADCAST_ID, SYNC_WRITE, InstructionPacket, PacketReader
 from hardware.exceptions import InvalidArm, OutsideLimits
 from hardware.servos.joints import SYNC_CABLE, ArmMap, JointDrive
 from hardware.simulator.servo import Clock, SimulatedServo

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from hardware.bus.protocol import ERROR_ANGLE_LIMIT, ERROR_RANGE
+from hardware.bus.packets import ERROR_ANGLE_LIMIT, ERROR_RANGE
 from hardware.servos.control_tables import Register, ServoModel
 
 WRITABLE_WHEN_LOCKED: Final = range(24, 36)

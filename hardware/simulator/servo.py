@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from hardware.bus.protocol import (
+from hardware.bus.packets import (
     ACTION,
     ERROR_CHECKSUM,
     ERROR_INSTRUCTION,

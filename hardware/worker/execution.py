@@ -13,7 +13,7 @@ import numpy as np
 
 from hardware.arm.servo_arm import ServoArm
 from hardware.clock import timestamp
-from hardware.end_effector.output import EndEffector
+from hardware.end_effector.end_effectors import EndEffector
 from hardware.exceptions import Canceled, HardwareError
 from hardware.link.messages import (
     CANCELED,

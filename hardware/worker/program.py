@@ -12,7 +12,7 @@ from hardware.arm.servo_arm import ServoArm
 from hardware.arm.setup_check import is_simulated
 from hardware.bus.dynamixel_bus import DynamixelBus
 from hardware.clock import RobotClock
-from hardware.end_effector.output import END_EFFECTORS
+from hardware.end_effector.end_effectors import END_EFFECTORS
 from hardware.exceptions import HardwareError
 from hardware.link.messages import Hello
 from hardware.link.worker_end import RobotLink, link_url
@@ -39,7 +39,7 @@ class WorkerOptions:
         robot: a robot's name, see `hardware.servos.instances`.
         port: the serial device.
         tool: the mounted tool; None: the robot's default.
-        end_effector: a name in `hardware.end_effector.output.END_EFFECTORS`.
+        end_effector: a name in `hardware.end_effector.end_effectors.END_EFFECTORS`.
         end_effector_record: file for the simulated end-effector's changes.
         calibration: a calibration file; None: the one that ships.
         data_dir: folder of the journal.

@@ -5,7 +5,7 @@ from typing import Final
 
 from hardware.arm.servo_arm import HeldPosture, ServoArm
 from hardware.clock import timestamp
-from hardware.end_effector.output import EndEffector
+from hardware.end_effector.end_effectors import EndEffector
 from hardware.exceptions import HardwareError
 from hardware.link.messages import StopReport
 

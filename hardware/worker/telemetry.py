@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Final
 
 from hardware.arm.servo_arm import ServoArm
-from hardware.end_effector.output import EndEffector
+from hardware.end_effector.end_effectors import EndEffector
 from hardware.link.messages import ExecutionAccount, Failure, Telemetry
 
 IDLE: Final = "idle"

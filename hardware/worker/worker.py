@@ -15,7 +15,7 @@ from typing import Final
 
 from hardware.arm.servo_arm import ServoArm
 from hardware.clock import RobotClock, timestamp
-from hardware.end_effector.output import EndEffector
+from hardware.end_effector.end_effectors import EndEffector
 from hardware.exceptions import (
     BusLost,
     Canceled,

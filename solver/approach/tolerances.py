@@ -1,4 +1,4 @@
-"""Every tolerance of this room, with its unit and its reason."""
+"""Tolerances that two rooms of `solver.approach` or more share, with unit and reason."""
 
 from typing import Final
 

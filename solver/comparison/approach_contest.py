@@ -16,13 +16,13 @@ from solver.kinematics.families import has_closed_form
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.any_arm import Solve
 from solver.methods.registry import METHODS
-from solver.planner.one_target import solve_between_rows_too
-from solver.planner.proposal import propose
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
 from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason, SolverReport
 from solver.robots.model import Array
+from solver.solving.one_target import solve_between_rows_too
+from solver.solving.proposal import propose
 from solver.verification.verify import refusal, verify
 
 INDEX_NAME: Final = "effort [rad]"

@@ -17,7 +17,7 @@ from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.robots.model import Array
 from solver.tolerances import TRAJECTORY_HALVINGS
-from solver.verification.paths import (
+from solver.verification.path_residuals import (
     ClaimedPaths,
     branch_residuals,
     deviation_residuals,

@@ -36,14 +36,14 @@ from solver.tolerances import (
     EFFORT_ERROR_RELATIVE,
     POSITION_ERROR_M,
 )
-from solver.verification.motion import (
+from solver.verification.motion_residuals import (
     Motion,
     cut_in_margin,
     motion_residuals,
     segment_rows,
     shape_residuals,
 )
-from solver.verification.paths import (
+from solver.verification.path_residuals import (
     ClaimedPaths,
     Residuals,
     branch_residuals,
@@ -53,7 +53,7 @@ from solver.verification.paths import (
     margin_residuals,
     path_residuals,
 )
-from solver.verification.residual import Residual, Verification
+from solver.verification.verdict import Residual, Verification
 
 MAY_BE_ABSENT = ("branch", "lower_bound", "displacement_margin_m")
 TIMED_FIELDS = ("transfer", "trajectory")

@@ -6,7 +6,7 @@ from functools import cache
 
 from hardware.arm.servo_arm import ServoArm
 from hardware.bus.bus import StatusReply
-from hardware.bus.protocol import (
+from hardware.bus.packets import (
     BROADCAST_ID,
     READ,
     SYNC_WRITE,

@@ -64,7 +64,7 @@ def test_every_kernel_names_the_cache_and_so_does_all_that_it_imports() -> None:
 
 def test_what_no_kernel_uses_does_not_name_the_cache() -> None:
     sources = {file.relative_to(SOLVER).as_posix() for file in compiled.kernel_sources()}
-    assert sources.isdisjoint({"planner/solve.py", "methods/nlp/tolerances.py", "warm_up.py"})
+    assert sources.isdisjoint({"solving/solve.py", "methods/nlp/tolerances.py", "warm_up.py"})
 
 
 @pytest.fixture

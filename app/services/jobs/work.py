@@ -10,7 +10,7 @@ from app.services.plans.wire import parse_stored_request, problem_from_wire
 from app.store.jobs import NewPart
 from solver import Problem
 from solver.kinematics.families import has_closed_form
-from solver.planner.staged import (
+from solver.solving.staged import (
     Choice,
     choice_from_json,
     choice_to_json,

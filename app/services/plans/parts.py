@@ -10,7 +10,7 @@ import orjson
 from app.observation.measures import PlanFigures
 from app.services.plans.wire import plan_to_wire
 from solver import Plan, Problem
-from solver.planner.staged import Choice, plan_part
+from solver.solving.staged import Choice, plan_part
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Totals:
 def solve_part(
     problem: Problem, choice: Choice, first: int, count: int, reference: Sequence[float]
 ) -> tuple[Plan, SolvedPart]:
-    """Some targets of a batch by `solver.planner.staged.plan_part`, and the part they make."""
+    """Some targets of a batch by `solver.solving.staged.plan_part`, and the part they make."""
     started = time.perf_counter()
     approaches = plan_part(problem, choice, first, count, reference)
     plan = Plan(problem, approaches, time.perf_counter() - started)

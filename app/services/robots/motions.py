@@ -12,8 +12,8 @@ from hardware.clock import timestamp
 from hardware.link.messages import Failure, SegmentTimes, TargetMotion, encode
 from solver import Approach, InvalidProblem, Problem
 from solver.exceptions import RetimingFailed
-from solver.planner.retiming import ChosenApproach, retime
 from solver.problem.solution import PLANNED
+from solver.solving.retiming import ChosenApproach, retime
 
 
 def target_motions(request: str, answer: str, execution_id: str) -> tuple[str, ...] | Failure:

@@ -23,7 +23,7 @@ from app.services.solving.process import SolverLost
 from app.services.solving.work import prepare, solve_share, solve_to_json
 from solver import Problem
 from solver.frames.transforms import RigidTransform
-from solver.planner.many_targets import plans_together
+from solver.solving.many_targets import plans_together
 
 Result = TypeVar("Result")
 

@@ -8,7 +8,7 @@ from app.services.plans.parts import SolvedPart, plan_figures, solve_part
 from app.services.plans.wire import plan_to_wire
 from app.services.solving.long_lived import keep_for_good
 from solver import Problem, solve
-from solver.planner.staged import choose
+from solver.solving.staged import choose
 
 
 def solve_to_json(problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:

@@ -13,7 +13,7 @@ from solver.comparison.strawberry.mechanism import (
 )
 from solver.comparison.strawberry.tolerances import LIMIT_EXCESS_M
 from solver.tolerances import EFFORT_ERROR_RELATIVE, LIMIT_EXCESS_RAD, POSITION_ERROR_M
-from solver.verification.residual import Residual, Verification
+from solver.verification.verdict import Residual, Verification
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from app.server.application import create_app
 from app.services.plans.wire import parse_request, problem_from_wire
 from app.settings import Settings
 from app.store import executions, jobs
-from hardware.bus.protocol import ERROR_NAMES
-from hardware.end_effector.output import END_EFFECTORS
+from hardware.bus.packets import ERROR_NAMES
+from hardware.end_effector.end_effectors import END_EFFECTORS
 from solver import InvalidProblem, Options, Problem
 from solver.comparison.run import MAXIMUM_REPEATS, MOST_REPEATS
 from solver.comparison.summary import FAILURE_CHARGE

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from hardware.bus.protocol import (
+from hardware.bus.packets import (
     HEADER,
     READ,
     WRITE,

@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hardware.bus.protocol import BROADCAST_ID, PING, SYNC_WRITE, WRITE, instruction_packet
+from hardware.bus.packets import BROADCAST_ID, PING, SYNC_WRITE, WRITE, instruction_packet
 from hardware.exceptions import InvalidArm, OutsideLimits
 from hardware.servos.joints import SYNC_CABLE, ArmMap
 from hardware.simulator import simulated_arm

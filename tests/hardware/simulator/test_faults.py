@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from hardware.bus.protocol import ERROR_OVERHEATING, ERROR_OVERLOAD, ERROR_VOLTAGE, PING
+from hardware.bus.packets import ERROR_OVERHEATING, ERROR_OVERLOAD, ERROR_VOLTAGE, PING
 from hardware.simulator.faults import FAULTS, FaultRefused, apply_fault
 from tests.hardware.simulator.conftest import Answer, Client, HandClock
 

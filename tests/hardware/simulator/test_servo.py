@@ -2,7 +2,7 @@
 
 import pytest
 
-from hardware.bus.protocol import (
+from hardware.bus.packets import (
     ACTION,
     BROADCAST_ID,
     BULK_READ,

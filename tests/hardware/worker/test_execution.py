@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from hardware.bus.protocol import SYNC_WRITE, WRITE
-from hardware.end_effector.output import OFF, ON
+from hardware.bus.packets import SYNC_WRITE, WRITE
+from hardware.end_effector.end_effectors import OFF, ON
 from hardware.exceptions import (
     Canceled,
     EndEffectorFailed,

@@ -2,10 +2,10 @@ from pathlib import Path
 
 import pytest
 
-from hardware.end_effector.output import OFF, GuardedEndEffector, NoEndEffector
+from hardware.end_effector.end_effectors import OFF, GuardedEndEffector, NoEndEffector
 from hardware.exceptions import EndEffectorFailed
 from hardware.worker.safe_state import make_safe, stop_report
-from tests.hardware.end_effector.test_output import changes
+from tests.hardware.end_effector.test_end_effectors import changes
 from tests.hardware.parts import Bench, make_bench
 
 

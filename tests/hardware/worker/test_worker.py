@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from hardware.arm.servo_arm import ServoArm
 from hardware.clock import RobotClock
-from hardware.end_effector.output import OFF, ON
+from hardware.end_effector.end_effectors import OFF, ON
 from hardware.exceptions import EndEffectorFailed
 from hardware.link.messages import (
     CANCELED,

@@ -23,9 +23,9 @@ from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.numerical import chain_of, polish, postures_behind
 from solver.methods.registry import METHODS
-from solver.planner.retiming import ChosenApproach, retime
 from solver.problem.solution import Reason
 from solver.robots.model import Array
+from solver.solving.retiming import ChosenApproach, retime
 from tests.solver.kinematics.arms import seven_joints, ur5
 
 

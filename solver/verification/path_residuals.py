@@ -23,8 +23,8 @@ from solver.tolerances import (
     SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
-from solver.verification.residual import Residual
 from solver.verification.tolerances import RATE_EXCESS_RELATIVE
+from solver.verification.verdict import Residual
 
 
 @dataclass(frozen=True)

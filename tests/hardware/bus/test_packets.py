@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.bus.protocol import (
+from hardware.bus.packets import (
     ACTION,
     BROADCAST_ID,
     ERROR_NAMES,

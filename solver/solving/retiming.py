@@ -15,11 +15,11 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.exceptions import RetimingFailed
 from solver.kinematics.families import has_branches
-from solver.planner.proposal import propose
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.problem.targets import Target
 from solver.robots.model import Array
+from solver.solving.proposal import propose
 from solver.tolerances import SAME_POSTURE_RAD
 from solver.verification.verify import judge
 

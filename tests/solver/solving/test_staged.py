@@ -3,7 +3,8 @@ from dataclasses import replace
 import pytest
 
 from solver import Options, Plan, Problem, Robot, load_robot, solve
-from solver.planner.staged import (
+from solver.problem.solution import INFEASIBLE, Approach
+from solver.solving.staged import (
     choice_from_json,
     choice_to_json,
     choose,
@@ -11,9 +12,8 @@ from solver.planner.staged import (
     next_reference,
     plan_part,
 )
-from solver.problem.solution import INFEASIBLE, Approach
-from tests.solver.planner.test_solve import comparable
 from tests.solver.problems import random_targets
+from tests.solver.solving.test_solve import comparable
 
 
 def in_parts(problem: Problem, size: int) -> Plan:

@@ -13,12 +13,12 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.kinematics.families import has_closed_form
 from solver.methods.registry import METHODS
-from solver.planner.many_targets import plan_many, plan_stops, plans_together
-from solver.planner.one_target import plan_target
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, Arc
 from solver.problem.targets import Target
 from solver.sequencing.sequence import Stop, sequence
+from solver.solving.many_targets import plan_many, plan_stops, plans_together
+from solver.solving.one_target import plan_target
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hardware.end_effector.output import (
+from hardware.end_effector.end_effectors import (
     END_EFFECTORS,
     OFF,
     ON,

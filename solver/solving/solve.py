@@ -2,9 +2,9 @@
 
 import time
 
-from solver.planner.staged import choose, in_answer_order, plan_part
 from solver.problem.problem import Problem
 from solver.problem.solution import Plan
+from solver.solving.staged import choose, in_answer_order, plan_part
 
 
 def solve(problem: Problem) -> Plan:

@@ -5,11 +5,11 @@ import pytest
 
 from solver import Options, Problem, Robot, Target, load_robot, verify
 from solver.comparison.targets import as_targets, drawn_at_edges
-from solver.planner import many_targets
-from solver.planner.many_targets import plan_many, plan_stops, plans_together
-from solver.planner.one_target import plan_target
-from solver.planner.staged import choose, next_reference
 from solver.problem.solution import PLANNED
+from solver.solving import many_targets
+from solver.solving.many_targets import plan_many, plan_stops, plans_together
+from solver.solving.one_target import plan_target
+from solver.solving.staged import choose, next_reference
 from solver.verification.many import judge_many
 from tests.solver.problems import random_targets
 

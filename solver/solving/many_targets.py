@@ -1,6 +1,6 @@
 """Many targets planned together, without a loop in Python: exact ones, without timed motion.
 
-What cannot be vouched for here is left to `solver.planner.one_target`: a batch only ever saves
+What cannot be vouched for here is left to `solver.solving.one_target`: a batch only ever saves
 time.
 """
 

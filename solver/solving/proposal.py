@@ -8,13 +8,14 @@ from solver.approach.cut_in.cut_in import CutIn
 from solver.approach.task.candidate import Candidate
 from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.motion.timing import TimedRows, time_joint_line
+from solver.motion.transfers.joint_line import joint_line
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
-from solver.problem.solution import Approach, Segment, SolverReport, Trajectory, Transfer
+from solver.problem.solution import Approach, Segment, SolverReport, Trajectory
 from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.tolerances import TRAJECTORY_STEP_S
-from solver.verification.motion import cut_in_margin
+from solver.verification.motion_residuals import cut_in_margin
 from solver.verification.verify import thinning_placement
 
 PROPOSED = "proposed"
@@ -33,11 +34,7 @@ def propose(
     standby, thinning = cut_in.path_joints[0], cut_in.path_joints[-1]
     transfer = trajectory = None
     if cut_in.motion is not None:
-        transfer = Transfer(
-            "joint_line",
-            np.array([start, standby]),
-            float(np.linalg.norm((standby - start) * problem.robot.turning)),
-        )
+        transfer = joint_line(problem.robot, start, standby)
         trajectory = _trajectory(problem, start, cut_in.motion)
     used = thinning_placement(problem, target, candidate.tool_side, thinning)
     options = problem.options

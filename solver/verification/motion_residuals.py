@@ -11,8 +11,8 @@ from solver.problem.problem import Problem
 from solver.problem.solution import Trajectory, Transfer
 from solver.robots.model import Array
 from solver.tolerances import LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_POSTURE_RAD
-from solver.verification.residual import Residual
 from solver.verification.tolerances import RATE_EXCESS_RELATIVE, SAME_TIME_S
+from solver.verification.verdict import Residual
 
 SEGMENTS = ("transfer", "cut_in", "dwell", "retreat")
 

@@ -9,7 +9,7 @@ import pytest
 
 from solver import Approach, Options, Plan, Problem, Robot, Target, load_robot, solve, verify
 from solver.exceptions import RetimingFailed
-from solver.planner.retiming import ChosenApproach, retime
+from solver.solving.retiming import ChosenApproach, retime
 from tests.solver.problems import DATA_SET_3, data_set_3, random_targets
 
 

@@ -11,12 +11,12 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.any_arm import Solve
 from solver.methods.registry import METHODS
-from solver.planner.proposal import propose
 from solver.problem.problem import Problem
 from solver.problem.solution import INFEASIBLE, Approach, Reason, SolverReport
 from solver.problem.targets import Target
 from solver.sequencing.programmed import programmed
 from solver.sequencing.sequence import Stop
+from solver.solving.proposal import propose
 from solver.tolerances import EXCHANGE_ROUNDS
 from solver.verification.verify import judge
 
