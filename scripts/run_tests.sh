@@ -1,6 +1,7 @@
 #!/bin/sh
 # Tests: run_tests.sh FOLDER_OF_PYTEST [PLACE]...; without a place all of them. A place is a file or
-# folder of tests, or one of the sources, whose tests lie in the same place under tests/.
+# folder of tests, or one of the sources, whose tests lie in the same place under tests/; for a source
+# without a test of its own, those of the folder that it lies in.
 #
 # Two cores and three lanes. Tests that keep time with clocks run one by one, before all others.
 # Services and commands, which wait now and then, run three at a time behind them, at a low priority
@@ -10,16 +11,32 @@ pytest=$1/pytest
 shift
 
 tests_of() {
-    case $1 in
-        tests | tests/*) echo "$1" ;;
-        *.py) echo "tests/$(dirname "$1")/test_$(basename "$1")" ;;
-        *) echo "tests/$1" ;;
+    place=${1#"$PWD"/}
+    place=${place#./}
+    place=${place%/}
+    case $place in
+        tests | tests/*) echo "$place" && return ;;
+        */__init__.py) place=${place%/*} ;;
+        *.py)
+            own=tests/${place%/*}/test_${place##*/}
+            [ -f "$own" ] && echo "$own" && return
+            place=${place%/*}
+            ;;
     esac
+    while [ ! -e "tests/$place" ]; do
+        case $place in
+            */*) place=${place%/*} ;;
+            *) echo "there are no tests for $1" >&2 && return 2 ;;
+        esac
+    done
+    echo "tests/$place"
 }
 
 if [ $# -gt 0 ]; then
     for place; do
-        set -- "$@" "$(tests_of "${place%/}")"
+        found=$(tests_of "$place") || exit 2
+        [ "$found" = "${place%/}" ] || echo "== $place: $found"
+        set -- "$@" "$found"
         shift
     done
     exec "$pytest" "$@"
@@ -33,12 +50,16 @@ failed=0
 nice -n 14 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
     tests/app tests/deploy tests/docs >"$waiting" 2>&1 &
 services=$!
-nice -n 19 "$pytest" tests/bench tests/contracts tests/solver >"$computing" 2>&1 &
+nice -n 19 "$pytest" -m "not alone" tests --ignore tests/app --ignore tests/deploy \
+    --ignore tests/docs --ignore tests/hardware --ignore tests/contracts/test_bus.py \
+    >"$computing" 2>&1 &
 solver=$!
+# A shell without a terminal keeps an interrupt from what it has in the background.
+trap 'kill $services $solver 2>/dev/null; exit 130' INT TERM
 # Named, as collecting all to leave most out takes ten seconds.
 # shellcheck disable=SC2046
 "$pytest" -m alone $(grep -rlw --include="*.py" "mark.alone" tests) || failed=1
-"$pytest" tests/hardware || failed=1
+"$pytest" tests/hardware tests/contracts/test_bus.py || failed=1
 wait $services || failed=1
 wait $solver || failed=1
 cat "$waiting" "$computing"

@@ -24,12 +24,12 @@ find_python() {
 ensure_venv_module() {
     "$python" -c 'import ensurepip, venv' 2>/dev/null && return
     package="python$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')-venv"
-    if [ "${APT:-}" = 1 ]; then
+    if [ "${APT:-}" = 1 ] && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
         echo "== installing $package (Python's venv module is missing)"
         apt-get update -q && apt-get install -y -q --no-install-recommends "$package"
     else
         echo "Python's venv module is missing. On Debian, as root: apt-get install $package" >&2
-        echo "Or let it be installed: make APT=1 ..." >&2
+        echo "Or let it be installed, as root: make APT=1 ..." >&2
         exit 1
     fi
 }

@@ -57,4 +57,4 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """A store that was not tested must not go unnoticed between dots."""
     if find_programs() is None:
         terminalreporter.section("PostgreSQL is not installed", red=True, bold=True)
-        terminalreporter.line(f"Tests that need it were skipped. {INSTALL}")
+        terminalreporter.line(f"Tests that need it were skipped, or failed with CI=true. {INSTALL}")

@@ -2,7 +2,7 @@
 
 from typing import Any, Final
 
-from app.services.robots.leases import LEASE_HEADER
+from app.schemas.leases import LEASE_HEADER
 
 PREFLIGHT_MAX_AGE_S: Final = 600
 

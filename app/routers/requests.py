@@ -6,7 +6,7 @@ from fastapi import Request
 
 from app.errors import ProblemError
 from app.schemas.examples import EXAMPLES
-from app.services.robots.leases import LEASE_HEADER
+from app.schemas.leases import LEASE_HEADER
 
 NDJSON = "application/x-ndjson"
 

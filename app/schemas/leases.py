@@ -6,6 +6,7 @@ from pydantic import MISSING, BaseModel, Field
 
 from app.schemas.strict_body import StrictBody
 
+LEASE_HEADER: Final = "Prunus-Lease"
 LEAST_LEASE_S: Final = 1.0
 MOST_LEASE_S: Final = 300.0
 """A client that is gone blocks a robot no longer than this."""

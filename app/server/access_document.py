@@ -4,8 +4,8 @@ from typing import Any, Final
 
 from app.guards.route_scopes import LEASED, OPEN, ROUTES, UNLIMITED
 from app.routers.problem_answers import problem_answers
+from app.schemas.leases import LEASE_HEADER
 from app.services.access.scopes import ADMIN, SCOPES
-from app.services.robots.leases import LEASE_HEADER
 
 SCHEME: Final = "bearer"
 NOT_OPERATIONS: Final = ("parameters", "summary", "description", "servers", "$ref")

@@ -16,7 +16,7 @@ from typing import Any
 
 import psycopg
 
-INSTALL = "As root: apt-get install postgresql (make test does it where it may)"
+INSTALL = "On Debian, as root: apt-get install postgresql, or make setup APT=1"
 ADMINISTRATOR = "prunus"
 START_S = 60
 

@@ -40,7 +40,7 @@ def drawn_at_edges(
         count: how many.
     """
     rng = np.random.default_rng(seed)
-    lower, upper = robot.lower + margin_rad, robot.upper - margin_rad
+    lower, upper = robot.limits_within(margin_rad)
     q = rng.uniform(lower, upper, (count, len(lower)))
     beside = 10.0 ** rng.uniform(-5, -1, count)
     k = np.arange(count)

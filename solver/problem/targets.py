@@ -19,6 +19,8 @@ class Target:
         position_m: the blossom in the base frame, three numbers [m].
         branch_direction: along the branch, three numbers of any length above zero; the approach
             angle turns about it as given.
+        position_std_m: how uncertain the position is, a standard deviation in every direction [m];
+            None: not at all.
     """
 
     id: str

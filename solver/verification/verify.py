@@ -18,7 +18,6 @@ from solver.approach.uncertainty.robustness import needed_margin, path_displacem
 from solver.kinematics.families import has_branches
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES
-from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
 from solver.problem.solution import (
     INFEASIBLE,
@@ -50,6 +49,7 @@ from solver.verification.path_residuals import (
     deviation_residuals,
     displacement_residuals,
     effort_residuals,
+    efforts_between,
     margin_residuals,
     path_residuals,
 )
@@ -243,9 +243,7 @@ def _number_residuals(
     efforts = np.array([claim.effort])
     yield from _single(effort_residuals(problem, thinning, references, efforts))
     if claim.lower_bound is not None:
-        effort = posture_effort(
-            claim.thinning_joints, reference, problem.joint_weights, problem.options.norm
-        )
+        (effort,) = efforts_between(problem, thinning, references).tolist()
         above = (claim.lower_bound - effort) / max(1.0, effort)
         yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
     claimed = _claimed_path(problem, target, claim)

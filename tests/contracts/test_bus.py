@@ -23,11 +23,18 @@ ABSENT_ID = 200
 
 
 @contextmanager
-def servo_bus(*arguments: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+def servo_bus(
+    *arguments: str, stderr: int | None = None
+) -> Iterator[tuple[str, subprocess.Popen[str]]]:
     """The program `prunus servo-bus`: its device, and the process, whose input takes faults."""
     command = [sys.executable, "-m", "app", "servo-bus", *arguments]
     with subprocess.Popen(
-        command, cwd=REPOSITORY, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        command,
+        cwd=REPOSITORY,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
+        text=True,
     ) as process:
         try:
             assert process.stdout is not None

@@ -13,14 +13,12 @@ import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
-from typing import Final
 
+from app.schemas.leases import LEASE_HEADER
 from app.services.exceptions import Conflict, NotFound
 from app.services.idempotency import key_reused
 from app.store import NewKey
 from hardware.clock import instant_text
-
-LEASE_HEADER: Final = "Prunus-Lease"
 
 
 @dataclass(frozen=True)

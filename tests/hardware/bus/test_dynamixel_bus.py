@@ -4,7 +4,6 @@ import contextlib
 import os
 import subprocess
 import threading
-import time
 import tty
 from collections.abc import Iterator
 
@@ -27,12 +26,17 @@ class Line:
         assert self.process.stdin is not None
         self.process.stdin.write("".join(f"{command}\n" for command in commands))
         self.process.stdin.flush()
-        time.sleep(0.2)
+        # A line that is no fault is complained of, after all before it.
+        assert self.process.stderr is not None
+        self.process.stdin.write("understood\n")
+        self.process.stdin.flush()
+        while "understood" not in self.process.stderr.readline():
+            pass
 
 
 @pytest.fixture
 def line() -> Iterator[Line]:
-    with servo_bus() as (device, process):
+    with servo_bus(stderr=subprocess.PIPE) as (device, process):
         it = Line(device, process)
         yield it
         it.bus.close()
