@@ -16,7 +16,9 @@ from typing import Final
 import numpy as np
 
 from solver import compiled
+from solver.approach.arcs.of_problem import arcs_of_packed
 from solver.approach.numerical.warm_start import numerical_warm_start
+from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.registry import METHODS
@@ -25,7 +27,9 @@ from solver.problem.problem import Problem
 from solver.problem.targets import Target
 from solver.robots.files import load_robot, robot_names
 from solver.robots.model import Robot
-from solver.sequencing.tolerances import EXACT_TARGETS
+from solver.sequencing.gather import gather
+from solver.sequencing.ordering import coarse_nodes, searched_order
+from solver.sequencing.tolerances import ANNEAL_STEP_RAD
 from solver.solving.solve import solve
 
 TELL_S: Final = 10.0
@@ -64,11 +68,15 @@ def refusals_and_bounds() -> None:
 
 
 def orders() -> None:
-    """Few targets are ordered by other kernels than many; robots share them."""
+    """Few targets are ordered by other kernels than many, whose long search is not made here."""
     robot = load_robot("tabletop")
-    for count in (2, EXACT_TARGETS + 1):
-        targets = [replace(home_target(robot), id=str(k)) for k in range(count)]
-        solve(Problem(robot, targets, options=Options(method="ssas", order="optimal")))
+    targets = [replace(home_target(robot), id=str(k)) for k in range(3)]
+    problem = Problem(robot, targets, options=Options(method="ssas", order="optimal"))
+    solve(problem)
+    numbers = packed_problem(problem)
+    arcs = arcs_of_packed(problem, numbers)
+    batch = gather(problem, numbers, [arcs[target.id] for target in targets])
+    searched_order(coarse_nodes(batch, ANNEAL_STEP_RAD), len(targets), 0, trials_a_target=1)
 
 
 def other_arms() -> None:

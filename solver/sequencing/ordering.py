@@ -54,7 +54,7 @@ def orders_worth_refining(batch: Batch, seed: int) -> list[Indices]:
     if targets <= EXACT_TARGETS:
         nodes = coarse_nodes(batch, EXACT_STEP_RAD)
         return list(cheapest_orders(nodes, EXACT_ORDERS_KEPT))
-    return [_searched(coarse_nodes(batch, ANNEAL_STEP_RAD), targets, seed)]
+    return [searched_order(coarse_nodes(batch, ANNEAL_STEP_RAD), targets, seed)]
 
 
 def coarse_nodes(batch: Batch, step: float) -> Nodes:
@@ -75,7 +75,9 @@ def coarse_nodes(batch: Batch, step: float) -> Nodes:
     )
 
 
-def _searched(nodes: Nodes, targets: int, seed: int) -> Indices:
+def searched_order(
+    nodes: Nodes, targets: int, seed: int, trials_a_target: int = ANNEAL_TRIALS
+) -> Indices:
     """The order that annealing ends with, from the nearest target to the next nearest."""
     distances = target_distances(nodes)
     order = nearest_next(distances)
@@ -85,5 +87,5 @@ def _searched(nodes: Nodes, targets: int, seed: int) -> Indices:
     np.fill_diagonal(between, np.inf)
     most = min(ANNEAL_NEIGHBOURS, targets - 1)
     neighbours = np.ascontiguousarray(np.argsort(between.T, axis=1, kind="stable")[:, :most])
-    trials = ANNEAL_TRIALS * targets
+    trials = trials_a_target * targets
     return np.asarray(anneal(nodes, order, chosen, neighbours, trials, seed)[0])

@@ -8,7 +8,7 @@ from bench.service.memory import sample
 from bench.service.mixed import mixed_load
 from tests.app.conftest import Server
 
-DURATION_S = 20
+DURATION_S = 12
 MOST_GROWTH_KIB = 5 * 1024 * DURATION_S
 
 
