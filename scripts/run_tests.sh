@@ -50,7 +50,7 @@ failed=0
 nice -n 14 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
     tests/app tests/deploy tests/docs >"$waiting" 2>&1 &
 services=$!
-nice -n 19 "$pytest" -m "not alone" tests --ignore tests/app --ignore tests/deploy \
+nice -n 19 "$pytest" -n 2 --dist loadfile -m "not alone" tests --ignore tests/app --ignore tests/deploy \
     --ignore tests/docs --ignore tests/hardware --ignore tests/contracts/test_bus.py \
     >"$computing" 2>&1 &
 solver=$!
