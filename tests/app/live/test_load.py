@@ -3,15 +3,18 @@
 import asyncio
 from urllib.parse import urlsplit
 
+import pytest
+
 from bench.service.client import Client
 from bench.service.memory import sample
 from bench.service.mixed import mixed_load
 from tests.app.conftest import Server
 
-DURATION_S = 20
+DURATION_S = 60
 MOST_GROWTH_KIB = 300 * 1024
 
 
+@pytest.mark.long
 def test_mixed_load(server: Server) -> None:
     samples: list[tuple[float, int]] = []
 
@@ -22,8 +25,8 @@ def test_mixed_load(server: Server) -> None:
         sampling.cancel()
         client.close()
         assert tally.errors == 0, tally.notes
-        assert tally.done["plan"] > DURATION_S / 3
-        assert tally.done["read"] > DURATION_S / 6
+        assert tally.done["plan"] > 20
+        assert tally.done["read"] > 10
         assert tally.provoked
 
     asyncio.run(load())
