@@ -24,6 +24,7 @@ from solver.verification.path_residuals import (
     efforts_between,
     margin_residuals,
     path_residuals,
+    retreats_of,
 )
 
 
@@ -132,7 +133,7 @@ def _as_executed(
         if not len(bent):
             break
         count = 2 * count - 1
-        retreats = np.linspace(options.standoff_m, 0.0, count)
+        retreats = retreats_of(options, count)
         rows = many_retreat_rows(robot, tool, claimed.paths[bent, -1], branches[bent], retreats)
         lines = claimed.places[bent], claimed.axes[bent, :, 2]
         deviations[bent] = line_deviations(robot, tool, rows, *lines)

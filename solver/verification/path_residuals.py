@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.problem.options import Options
 from solver.problem.problem import Problem
 from solver.robots.model import Array
 from solver.tolerances import (
@@ -78,7 +79,7 @@ def path_residuals(
     """
     options, paths, axes = problem.options, claimed.paths, claimed.axes
     poses = many_poses(problem.robot, problem.mounted_tool, paths)
-    retreats = np.linspace(options.standoff_m, 0.0, options.path_points)
+    retreats = retreats_of(options, options.path_points)
     places = claimed.places[:, None] - retreats[:, None] * axes[:, None, :, 2]
     errors = poses[..., :3, 3] - places
     yield Residuals("path_position_m", _longest(errors), POSITION_ERROR_M)
@@ -90,6 +91,11 @@ def path_residuals(
     spacing = options.standoff_m / (options.path_points - 1)
     rates = np.abs(np.diff(paths, axis=1)).max(axis=(1, 2)) / spacing
     yield Residuals("wrist_jump_rad_m", rates, JOINT_RATE_RAD_M * (1 + RATE_EXCESS_RELATIVE))
+
+
+def retreats_of(options: Options, rows: int) -> Array:
+    """Where rows have to be behind the target, from the standoff down to 0, shape (rows,) [m]."""
+    return np.linspace(options.standoff_m, 0.0, rows)
 
 
 def branch_residuals(

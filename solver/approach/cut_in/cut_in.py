@@ -211,18 +211,14 @@ def broken_limit(task: ApproachTask, candidate: Candidate) -> float | None:
     shares = np.arange(EXCHANGE_DENSITY)[:, None] / EXCHANGE_DENSITY
     retreats = np.append((coarse[:-1] + shares * np.diff(coarse)).T.ravel(), 0.0)
     for _ in range(EXCHANGE_ZOOMS):
-        inside = _inside(task, _postures(task, candidate, retreats))
+        inside = task.inside(_postures(task, candidate, retreats)).min(axis=1)
         k = int(inside.argmin())
         around = retreats[max(k - 1, 0)], retreats[min(k + 1, len(retreats) - 1)]
         finer = np.linspace(*around, 2 * EXCHANGE_DENSITY + 1)
         retreats = np.unique(np.concatenate((retreats, finer)))[::-1]
-    worst = _inside(task, _postures(task, candidate, retreats))
+    worst = task.inside(_postures(task, candidate, retreats)).min(axis=1)
     k = int(worst.argmin())
     return float(retreats[k]) if worst[k] < -LIMIT_EXCESS_RAD / 2 else None
-
-
-def _inside(task: ApproachTask, rows: Array) -> Array:
-    return np.asarray(np.minimum(rows - task.lower, task.upper - rows).min(axis=1))
 
 
 def _postures(task: ApproachTask, candidate: Candidate, retreats: Array) -> Array:

@@ -64,7 +64,7 @@ def numerical_warm_start(task: ApproachTask) -> NumericalStart | Reason:
     stages = _Stages()
     for found in _from_all_starts(task, task.lower, task.upper):
         reached = found.errors <= POSITION_ERROR_M
-        inside = _inside(task, found.postures)
+        inside = task.inside(found.postures).min(axis=-1)
         good = np.flatnonzero(reached & (inside >= -LIMIT_EXCESS_RAD / 2))
         efforts = _efforts(task, found.postures[good])
         for k in good[np.argsort(efforts, kind="stable")]:
@@ -158,10 +158,6 @@ def _from_all_starts(task: ApproachTask, lower: Array, upper: Array) -> list[_Fo
     return found
 
 
-def _inside(task: ApproachTask, rows: Array) -> Array:
-    return np.asarray(np.minimum(rows - task.lower, task.upper - rows).min(axis=-1))
-
-
 def _efforts(task: ApproachTask, postures: Array) -> Array:
     costs = joint_costs(postures - np.asarray(task.reference), task.options.norm)
     return np.asarray(costs @ np.asarray(task.joint_weights))
@@ -175,7 +171,7 @@ def _cut_in_holds(task: ApproachTask, rows: Array, stages: _Stages) -> bool:
     missed = np.linalg.norm(poses[:, :3, 3] - line, axis=1) + np.linalg.norm(
         poses[:, :3, :3] - poses[-1, :3, :3], axis=(1, 2)
     )
-    inside = _inside(task, rows)
+    inside = task.inside(rows).min(axis=-1)
     if missed[0] <= POSITION_ERROR_M:
         stages.standby_margin = max(stages.standby_margin, float(inside[0]))
         stages.standby |= bool(inside[0] >= -LIMIT_EXCESS_RAD / 2)
@@ -229,7 +225,7 @@ def _without_limits(task: ApproachTask, starts: str) -> Reason:
             "the branch",
             margin_m=-float(away.min()),
         )
-    inside = np.minimum(postures - task.lower, task.upper - postures)[reached]
+    inside = task.inside(postures)[reached]
     best = int(inside.min(axis=1).argmax())
     joint = int(inside[best].argmin())
     beyond = float(inside[best, joint])

@@ -60,6 +60,10 @@ class ApproachTask:
         """Upper limits less the margin asked for, shape (joints,) [rad or m]."""
         return self.limits[1]
 
+    def inside(self, rows: Array) -> Array:
+        """Distance of each joint to its nearer limit, rows (..., joints) as they are [rad or m]."""
+        return np.minimum(rows - self.lower, self.upper - rows)
+
     def for_kernels(self, tool_side: int) -> CutInTask:
         """The task as the kernels take it, with the tool on one side, in the mount's frame."""
         position, y_axis, outward, sideways = self._vectors(tool_side)
