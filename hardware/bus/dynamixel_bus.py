@@ -162,16 +162,25 @@ class _Port(PortHandler):  # type: ignore[misc]
             exclusive=True,
         )
         self.is_open = True
+        self._arrived: int | None = None
         self.tx_time_per_byte = 10 * 1000 / self.baudrate
         return True
 
     def readPort(self, length: int) -> bytes:
-        # The SDK looks at the time only when it is short of bytes, which a babbling line never is.
-        late = self.getTimeSinceStart() > self.packet_timeout
-        return b"" if late else bytes(self.ser.read(length))
+        if self.getTimeSinceStart() <= self.packet_timeout:
+            return bytes(self.ser.read(length))
+        # This process may have stood still: what has come by now is an answer in time. No more is
+        # waited for, as the SDK looks at the time only when it is short of bytes, which a line that
+        # babbles never is.
+        if self._arrived is None:
+            self._arrived = self.ser.in_waiting
+        found = bytes(self.ser.read(min(length, self._arrived)))
+        self._arrived -= len(found)
+        return found
 
     def getCurrentTime(self) -> float:
         return time.monotonic() * 1000
 
     def setPacketTimeout(self, packet_length: int) -> None:
+        self._arrived = None
         self.setPacketTimeoutMillis(self.tx_time_per_byte * packet_length + REPLY_TIMEOUT_S * 1000)

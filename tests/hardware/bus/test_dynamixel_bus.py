@@ -4,6 +4,7 @@ import contextlib
 import os
 import subprocess
 import threading
+import time
 import tty
 from collections.abc import Iterator
 
@@ -11,6 +12,7 @@ import pytest
 
 from hardware.bus.dynamixel_bus import DynamixelBus
 from hardware.exceptions import BusLost, CorruptPackets, PortUnavailable, ServoMissing
+from hardware.tolerances import REPLY_TIMEOUT_S
 from tests.contracts.test_bus import servo_bus
 
 
@@ -46,6 +48,22 @@ def test_single_corrupt_packets_are_repeated_and_counted(line: Line) -> None:
     line.fault("corrupt-next 2")
     assert line.bus.read(41, 0, 2).data == bytes((64, 0))
     assert line.bus.retries == {41: 2}
+
+
+def test_an_answer_that_came_while_the_program_stood_still_is_read(
+    line: Line, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A busy machine may not run it for longer than an answer is waited for, after any packet."""
+    port = line.bus._port
+    begin = port.setPacketTimeout
+
+    def begin_to_wait_and_stand_still(length: int) -> None:
+        begin(length)
+        time.sleep(2 * REPLY_TIMEOUT_S)
+
+    monkeypatch.setattr(port, "setPacketTimeout", begin_to_wait_and_stand_still)
+    assert line.bus.read(41, 0, 2).data == bytes((64, 0))
+    assert not line.bus.retries
 
 
 def test_a_tenth_of_corrupt_packets_is_survived(line: Line) -> None:
