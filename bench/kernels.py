@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 
 BRANCHES = 8
 STRIDE = 257
+RATE_STEP_M = 1e-6
+"""Half the tool travel over which a joint's rate is taken; the rate is good to 1e-7."""
 
 
 class SweepTask(NamedTuple):
@@ -128,8 +130,27 @@ def posture(task, frame, axes, retreat, branch, q):
 
 
 @kernel
+def slow_enough(task, frame, axes, retreat, branch):
+    """Whether no joint turns faster than it may at a retreat, from the postures just beside it."""
+    z, before, after = axes[2], np.empty(6), np.empty(6)
+    for side, q in ((-RATE_STEP_M, before), (RATE_STEP_M, after)):
+        back = retreat + side + task.arm[4]
+        cx, cy, cz = frame[0] - back * z[0], frame[1] - back * z[1], frame[2] - back * z[2]
+        arm = wrist_centre_joints(task.arm, cx, cy, cz, branch // 4, branch // 2 % 2)
+        q[0], q[1], q[2], reached = arm
+        if not reached:
+            return False
+        q[3], q[4], q[5] = wrist_joints(q[0], q[1] + q[2], axes, branch % 2)
+    for i in range(6):
+        turn = abs(after[i] - before[i])
+        if min(turn, 2 * math.pi - turn) > task.rate * 2 * RATE_STEP_M:
+            return False
+    return True
+
+
+@kernel
 def cut_in_holds(task, frame, axes, branch, rows):
-    """Writes the cut-in to rows, shape (rows, 6); whether all of it is inside, without a jump.
+    """Writes the cut-in to rows, shape (rows, 6); whether all of it is inside, and slow enough.
 
     No joint of this arm turns as far as once, so inside the limits a posture has one value a joint.
     """
@@ -142,14 +163,19 @@ def cut_in_holds(task, frame, axes, branch, rows):
             for i in range(6):
                 if abs(rows[n, i] - rows[n + 1, i]) > allowed:
                     return False
+    for n in range(last + 1):  # noqa: SIM110  (Numba has no generators in calls)
+        if not slow_enough(task, frame, axes, task.retreats[n], branch):
+            return False
     return True
 
 
 @kernel
 def inside_between(task, frame, axes, branch, q):
-    """Whether the postures between the rows are inside the limits; q is scratch, shape (6,)."""
-    for retreat in task.between:  # noqa: SIM110  (Numba has no generators in calls)
+    """Whether postures between the rows are inside, and slow enough; q is scratch, shape (6,)."""
+    for retreat in task.between:
         if not posture(task, frame, axes, retreat, branch, q):
+            return False
+        if not slow_enough(task, frame, axes, retreat, branch):
             return False
     return True
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bench.kernels import BRANCHES, SweepTask, cheapest_chain, ladder_nodes, sweep
 from bench.targets import TargetSet
 from solver import Problem
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import even_retreats, looked_at_retreats
 from solver.tolerances import JOINT_RATE_RAD_M
 
 Array = NDArray[np.float64]
@@ -63,8 +63,8 @@ def sweep_task(problem: Problem, angles: int) -> SweepTask:
     if options.norm != "l1" or options.symmetric_tool:
         raise ValueError("the reference kernels know the l1 norm and a tool with one side only")
     phi = -math.pi + 2 * math.pi * np.arange(angles) / angles
-    rows = even_retreats(options)
-    fine = even_retreats(options, (options.path_points - 1) * (BETWEEN + 1) + 1)
+    rows = looked_at_retreats(options)
+    fine = even_retreats(options, (len(rows) - 1) * (BETWEEN + 1) + 1)
     lower, upper = robot.limits_within(options.limit_margin_rad)
     return SweepTask(
         arm=(j1.a_m, j2.a_m, j1.d_m, j4.d_m, j6.d_m + problem.mounted_tool.length_m),

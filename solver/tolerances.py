@@ -42,6 +42,10 @@ JOINT_RATE_RAD_M: Final = 250.0
 """Joint travel for tool travel in the cut-in above which it counts as a wrist jump [rad/m]: 14
 degrees of joint for each millimetre; at 2 rad/s the tool would creep at 8 mm/s."""
 
+RATE_EXCESS_SHARE: Final = 1e-7
+"""Share by which a joint may be faster than JOINT_RATE_RAD_M: where it is that fast, a posture good
+to 1e-12 makes 1e-10 of it, and an exchange ends within 5e-8."""
+
 LEAST_REFINED_ROWS: Final = 20
 """Rows from which a cut-in without timing is refined: T's number."""
 

@@ -59,8 +59,8 @@ class ReasonAnswer(BaseModel):
     )
     margin_rad: float | MISSING = Field(
         default=MISSING,
-        description="how far that joint is inside its limits at best, negative beyond; or by how "
-        "much it jumps more than it may, negative [rad]",
+        description="how far that joint is inside its limits at best, negative beyond [rad]; "
+        "absent where it turns too fast",
     )
     margin_m: float | MISSING = Field(
         default=MISSING,

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.compiled import kernel
+from solver.kinematics.forward import jacobian
 from solver.kinematics.tolerances import (
     NUMERICAL_FOLLOWED,
     NUMERICAL_MOST_PIECES,
@@ -85,6 +86,28 @@ def postures_behind(robot: Robot, tool: Tool, thinning: Array, retreats: Array) 
     locate(chain, rows[-1], frames)
     follow(chain, frames[-1, :3, 3].copy(), frames[-1, :3, :3].copy(), retreats, rows)
     return rows
+
+
+def rates_behind(robot: Robot, tool: Tool, rows: Array) -> Array:
+    """How fast joints turn or slide in a cut-in of `postures_behind`, for a unit of tool travel.
+
+    From the Jacobian's columns of the joints that move there, those chosen at the last row.
+
+    Args:
+        robot: any arm.
+        tool: its tool.
+        rows: postures of the cut-in, thinning last, shape (k, n) [rad or m].
+
+    Returns:
+        Magnitudes, shape (k, n) [rad/m or m/m].
+    """
+    chain, n = chain_of(robot, tool), rows.shape[1]
+    frames, rates = np.empty((n + 1, 4, 4)), np.zeros_like(rows)
+    locate(chain, np.ascontiguousarray(rows[-1]), frames)
+    free = free_joints(chain, frames, np.empty((6, n))) > 0
+    along = np.concatenate((frames[n, :3, 2], np.zeros(3)))
+    rates[:, free] = np.abs(np.linalg.pinv(jacobian(robot, tool, rows)[..., free]) @ along)
+    return rates
 
 
 @kernel

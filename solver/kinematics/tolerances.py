@@ -26,3 +26,7 @@ joint that turns too fast for that is beyond JOINT_RATE_RAD_M."""
 
 NUMERICAL_POLISH_STEPS: Final = 12
 """Newton steps allowed to polish a posture; the error is squared in each, so 3 or 4 are usual."""
+
+SWING_SHARE: Final = 0.9
+"""Share of a rate between two rows, where they go on as a straight line, from which it is told by
+that alone to be too high: a hundredth is what the line may be off by."""

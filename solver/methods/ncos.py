@@ -52,7 +52,7 @@ def solve_ncos(
         return solve_on_rail(task, rail)
     if not has_closed_form(task.robot, task.tool):
         return solve_other_arm(task)
-    if task.options.strike_zone_m > 0 or task.options.tilt_tolerance_rad > 0:
+    if task.options.relaxed:
         return _solve_with_relaxations(task, _Coupling(task, next_thinning))
     warm_start = best_on_arcs(task)
     return diagnose(task) if warm_start is None else improved(task, warm_start, next_thinning)

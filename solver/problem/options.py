@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from solver.problem.tolerances import LEAST_STRIKE_ZONE_M, LEAST_TILT_RAD
+
 METHOD_NAMES: Final = ("fixed_z", "floating_z", "as", "ssas", "ncos")
 BACKEND_NAMES: Final = ("sqp", "ipopt")
 QP_SOLVER_NAMES: Final = ("daqp", "osqp", "piqp")
@@ -59,6 +61,21 @@ class Options:
     def squared(self) -> bool:
         """Whether joint travel counts squared: the norm is l2."""
         return self.norm == "l2"
+
+    @property
+    def strikes(self) -> bool:
+        """Whether the strike zone is long enough to be one."""
+        return self.strike_zone_m > LEAST_STRIKE_ZONE_M
+
+    @property
+    def tilts(self) -> bool:
+        """Whether the tilt tolerance is wide enough to be one."""
+        return self.tilt_tolerance_rad > LEAST_TILT_RAD
+
+    @property
+    def relaxed(self) -> bool:
+        """Whether a relaxation is on that only the programme has."""
+        return self.strikes or self.tilts
 
     @property
     def timed(self) -> bool:

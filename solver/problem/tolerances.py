@@ -15,3 +15,10 @@ a camera tells nothing apart at a micrometre."""
 
 LONGEST_SEGMENT_M: Final = 100.0
 """A segment of a branch longer than any tree is a mistake of units [m]."""
+
+LEAST_STRIKE_ZONE_M: Final = 1e-9
+"""A strike zone up to this is none [m]: a thousandth of what the verifier lets pass, and far above
+where shares of it underflow."""
+
+LEAST_TILT_RAD: Final = 1e-9
+"""A tilt tolerance up to this is none [rad], for the same reason."""

@@ -7,7 +7,7 @@ import numpy as np
 from solver.approach.task.packed import LOWER, UPPER, jump_cosines
 from solver.problem.effort import cost_scale
 from solver.problem.problem import Problem
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import looked_at_retreats
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch
@@ -28,7 +28,7 @@ def gather(problem: Problem, numbers: Array, arcs: Sequence[Sequence[Arc]]) -> B
         for arc in own
     ]
     table = np.array(rows, dtype=np.float64).reshape(-1, 4)
-    retreats = even_retreats(options)
+    retreats = looked_at_retreats(options)
     scale = cost_scale(np.asarray(problem.joint_weights), options.norm)
     limits = numbers[0, 0]
     return Batch(

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.cut_in.cut_in import broken_between
 from solver.approach.optimum.on_arcs import ArcOptimum
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
@@ -24,6 +24,6 @@ def programmed(task: ApproachTask, stop: Stop, following: Stop | None) -> Candid
     next_thinning = None if following is None else following.candidate.thinning_joints
     start = ArcOptimum(stop.arc, stop.angle_rad, stop.candidate.effort, 0)
     candidate = improved(task, start, next_thinning)
-    if broken_limit(task, candidate) is not None:
+    if broken_between(task, candidate) is not None:
         return replace(stop.candidate, status="warm_start_after_broken_limit")
     return candidate

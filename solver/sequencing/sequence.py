@@ -7,7 +7,7 @@ import numpy as np
 
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.arcs.of_problem import arcs_of_packed
-from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.cut_in.cut_in import broken_between
 from solver.approach.optimum.batch import chosen_paths
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
@@ -15,6 +15,7 @@ from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
+from solver.problem.retreats import looked_at_retreats
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.sequencing.batch import Batch, Indices
@@ -182,11 +183,11 @@ def _stops(
             status="optimum_of_ladder",
         )
         stops.append(Stop(task, candidate, arc, float(chain.angles[k])))
-    missing = {}
+    missing, regular = {}, len(looked_at_retreats(problem.options))
     for k, (stop, suspect) in enumerate(zip(stops, paths.suspicious.tolist(), strict=True)):
         # Rows that were added lie unevenly, which the quick look cannot judge.
-        looked_at = suspect or len(stop.task.retreats_m) > problem.options.path_points
-        retreat = broken_limit(stop.task, stop.candidate) if looked_at else None
+        looked_at = suspect or len(stop.task.retreats_m) > regular
+        retreat = broken_between(stop.task, stop.candidate) if looked_at else None
         if retreat is not None and retreat not in stop.task.retreats_m:
             missing[k] = retreat
     return tuple(stops), missing

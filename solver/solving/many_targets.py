@@ -10,7 +10,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.cut_in.between_rows import many_may_leave_between
 from solver.approach.optimum.batch import Optima, chosen_paths, closed_form_optima, finer_paths
 from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.task.frame import signed_angle
@@ -21,7 +20,7 @@ from solver.problem.solution import Approach, SolverReport
 from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.sequencing.sequence import Stop
-from solver.tolerances import BATCH_PART, LEAST_REFINED_ROWS
+from solver.tolerances import BATCH_PART
 from solver.verification.many import ProposedPaths, judge_many
 
 METHOD = "ssas"
@@ -35,7 +34,6 @@ def plans_together(problem: Problem) -> bool:
         and not options.timed
         and not options.certify
         and "arcs" not in (options.include or ())
-        and options.path_points >= LEAST_REFINED_ROWS
         and has_closed_form(problem.robot, problem.mounted_tool)
         and rail_of(problem.robot, problem.mounted_tool) is None
     )
@@ -120,11 +118,9 @@ def _proposed(problem: Problem, targets: Sequence[Target]) -> tuple[ProposedPath
 def _leave_between_rows(
     problem: Problem, positions: Array, directions: Array, optima: Optima
 ) -> NDArray[np.bool_]:
-    """Whether a joint may leave its limits between two rows, shape (n,), on a second look too."""
-    leaves = np.empty(len(positions), dtype=np.bool_)
-    lower, upper = problem.robot.limits_within(problem.options.limit_margin_rad)
-    many_may_leave_between(optima.paths, lower, upper, leaves)
-    again = np.flatnonzero(leaves & (optima.branches != NO_BRANCH))
+    """Whether a cut-in may be infeasible between what is looked at, on a second look too, (n,)."""
+    leaves = optima.suspicious.copy()
+    again = np.flatnonzero(leaves)
     if len(again):
         leaves[again] = finer_paths(problem, positions, directions, optima, again).suspicious
     return leaves

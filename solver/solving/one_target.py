@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.bounds.certificate import certify_task, is_infeasible
-from solver.approach.cut_in.cut_in import broken_limit, build_cut_in
+from solver.approach.cut_in.cut_in import broken_between, build_cut_in
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.any_arm import Solve
@@ -77,7 +77,7 @@ def solve_between_rows_too(
         outcome = solve(task)
         if isinstance(outcome, Reason):
             return outcome, task
-        retreat = broken_limit(task, outcome)
+        retreat = broken_between(task, outcome)
         if retreat is None or retreat in task.retreats_m:
             return outcome, task
         task = task.with_retreat(retreat)

@@ -63,7 +63,11 @@ def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) 
     if candidate.branch is None:
         return None  # no closed form to follow a displaced target with
     return path_displacement_margin(
-        problem.robot, problem.mounted_tool, problem.options, candidate.branch, cut_in.path_joints
+        problem.robot,
+        problem.mounted_tool,
+        problem.options,
+        candidate.branch,
+        cut_in.path_joints[-1],
     )
 
 

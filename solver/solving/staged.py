@@ -151,12 +151,11 @@ def _together(
 def _as_one(problem: Problem) -> bool:
     """Whether approaches are chosen for the batch and not for each target."""
     options = problem.options
-    relaxed = options.strike_zone_m > 0 or options.tilt_tolerance_rad > 0
     return (
         options.order != "independent"
         and METHODS[options.method].chooses_among_arcs
         and has_closed_form(problem.robot, problem.mounted_tool)
-        and not (options.method == "ncos" and relaxed)
+        and not (options.method == "ncos" and options.relaxed)
     )
 
 

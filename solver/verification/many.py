@@ -16,7 +16,7 @@ from solver.approach.uncertainty.robustness import displacement_margins
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.robots.model import Array
-from solver.tolerances import TRAJECTORY_HALVINGS
+from solver.tolerances import LEAST_REFINED_ROWS, TRAJECTORY_HALVINGS
 from solver.verification.path_residuals import (
     ClaimedPaths,
     branch_residuals,
@@ -77,7 +77,7 @@ def judge_many(
     )
     accepted = np.logical_and.reduce([residual.accepted for residual in residuals])
     accepted &= np.isin(proposed.tool_sides, (1, -1) if options.symmetric_tool else (1,))
-    room = displacement_margins(robot, tool, options, proposed.branches, claimed.paths)
+    room = displacement_margins(robot, tool, options, proposed.branches, thinning)
     efforts = efforts_between(problem, thinning, proposed.references)
     columns = zip(
         proposed.target_ids,
@@ -125,22 +125,21 @@ def _as_executed(
     Motion goes through the rows, or where those are not straight enough through finer ones.
     """
     robot, tool, options = problem.robot, problem.mounted_tool, problem.options
-    deviations = line_deviations(robot, tool, claimed.paths, claimed.places, claimed.axes[..., 2])
+    lines = claimed.places, claimed.axes[..., 2]
+    deviations = np.full(len(claimed.paths), np.inf)
     margins = robot.limit_margin(claimed.paths).min(axis=1)
-    count = options.path_points
-    for _ in range(TRAJECTORY_HALVINGS):
+    count = max(options.path_points, LEAST_REFINED_ROWS)
+    for _ in range(TRAJECTORY_HALVINGS + 1):
         bent = np.flatnonzero(deviations > options.straightness_m)
         if not len(bent):
             break
+        rows = claimed.paths
+        if count > options.path_points:
+            retreats = retreats_of(options, count)
+            rows = many_retreat_rows(robot, tool, rows[bent, -1], branches[bent], retreats)
+        deviations[bent] = line_deviations(robot, tool, rows, *(part[bent] for part in lines))
+        margins[bent] = np.minimum(margins[bent], robot.limit_margin(rows).min(axis=1))
         count = 2 * count - 1
-        retreats = retreats_of(options, count)
-        rows = many_retreat_rows(robot, tool, claimed.paths[bent, -1], branches[bent], retreats)
-        lines = claimed.places[bent], claimed.axes[bent, :, 2]
-        deviations[bent] = line_deviations(robot, tool, rows, *lines)
-        margins[bent] = np.minimum(
-            robot.limit_margin(claimed.paths[bent]).min(axis=1),
-            robot.limit_margin(rows).min(axis=1),
-        )
     return deviations, margins
 
 

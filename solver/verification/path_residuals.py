@@ -21,10 +21,11 @@ from solver.tolerances import (
     JOINT_RATE_RAD_M,
     LIMIT_EXCESS_RAD,
     POSITION_ERROR_M,
+    RATE_EXCESS_SHARE,
     SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
-from solver.verification.tolerances import RATE_EXCESS_RELATIVE
+from solver.verification.joint_rates import fastest_rates
 from solver.verification.verdict import Residual
 
 
@@ -69,7 +70,7 @@ class ClaimedPaths:
 def path_residuals(
     problem: Problem, claimed: ClaimedPaths, standby: Array, thinning: Array
 ) -> Iterator[Residuals]:
-    """The rows are where they have to be, end where the answer says, and do not jump.
+    """The rows are where they have to be, end where the answer says, and no joint is too fast.
 
     Args:
         problem: what was asked.
@@ -88,9 +89,8 @@ def path_residuals(
     for (name, end), rows in zip(claimed.ends.items(), (standby, thinning), strict=True):
         apart = np.abs(rows - end).max(axis=1)
         yield Residuals(f"{name}_is_path_end_rad", apart, SAME_POSTURE_RAD)
-    spacing = options.standoff_m / (options.path_points - 1)
-    rates = np.abs(np.diff(paths, axis=1)).max(axis=(1, 2)) / spacing
-    yield Residuals("wrist_jump_rad_m", rates, JOINT_RATE_RAD_M * (1 + RATE_EXCESS_RELATIVE))
+    rates = fastest_rates(problem, paths)
+    yield Residuals("wrist_jump_rad_m", rates, JOINT_RATE_RAD_M * (1 + RATE_EXCESS_SHARE))
 
 
 def retreats_of(options: Options, rows: int) -> Array:

@@ -263,7 +263,7 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
         yield Residual("displacement_margin_absent", float(claim.branch is not None), 0.0)
         return
     margin = path_displacement_margin(
-        problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints
+        problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints[-1]
     )
     found, claims = np.array([margin]), np.array([claim.displacement_margin_m])
     needed = np.array([needed_margin(target)])

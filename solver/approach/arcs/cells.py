@@ -14,9 +14,9 @@ from typing import Final
 
 from solver.approach.arcs.tolerances import (
     CLEAR_MARGIN,
+    CLEAR_ROOM,
     NARROW_JUMP_RAD,
     ROUND_TURN_COSINE,
-    STEEPEST_JUMP,
 )
 from solver.approach.arcs.turns import (
     JOINT_OF_ROW,
@@ -26,7 +26,7 @@ from solver.approach.arcs.turns import (
     passes_behind,
     row_constraints,
     row_margin,
-    swings,
+    turn_cosine,
 )
 from solver.approach.task.constraints import BESIDE, JUMP, REACH
 from solver.approach.task.packed import COS_HALF
@@ -132,6 +132,12 @@ def enters_reach(left, m, right, n):
 
 
 @kernel
+def least_reach(turns, rows):
+    """The smaller of both reach margins in the first `rows` columns [m]."""
+    return min(turns[6 + REACH, :rows].min(), turns[6 + BESIDE, :rows].min())
+
+
+@kernel
 def swung(left, m, right, n, i):
     """Whether joint i turns so far between two columns that its margin need not be smooth."""
     cosines = left[2 * i, m] * right[2 * i, n]
@@ -176,7 +182,8 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
         for n in range(rows):
             if enters_reach(left, n, right, n):
                 return CellState.EDGE, -1, 0
-    if swings(left, right, rows, CELL_SWING_COSINE):
+    least_cosine = turn_cosine(left, right, rows)
+    if least_cosine < CELL_SWING_COSINE:
         return CellState.EXTREME, -1, 0
     state, extreme, at_row = CellState.FULL, -1, 0
     for i in range(JUMP):
@@ -206,13 +213,20 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
                 extreme, at_row = i, n
     a, b = left_margins[JUMP], right_margins[JUMP]
     if a < 0.0 and b < 0.0:
-        # The smallest of many rows' margins has corners, so that slopes tell little of it.
-        if width > NARROW_JUMP_RAD and max(a, b) > -STEEPEST_JUMP * width:
-            return CellState.EXTREME, -1, 0
         before, after = jump_margin(task, outer, wrist), jump_margin(task, beyond, wrist)
-        if peak_above(before, a, b, after) < 0.0:
-            return CellState.DEAD, -1, 0
-        extreme, at_row = JUMP, 0
-    elif (a < 0.0) != (b < 0.0):
+        peak = peak_above(before, a, b, after)
+        # Rates turn with the joints, so slopes tell of them to the square of how far one turns in
+        # the cell; at the edge of reach the elbow's falls like a root, of which they tell nothing.
+        edge = least_reach(outer, rows) < 0.0 or least_reach(beyond, rows) < 0.0
+        bent = (edge and width > NARROW_JUMP_RAD) or peak > 2.0 * (least_cosine - 1.0)
+        return (CellState.EXTREME if bent else CellState.DEAD), -1, 0
+    if (a < 0.0) != (b < 0.0):
         state = CellState.CROSSED
+    elif min(a, b) < CLEAR_ROOM:
+        before, after = jump_margin(task, outer, wrist), jump_margin(task, beyond, wrist)
+        valley = -peak_above(-before, -a, -b, -after)
+        if width > NARROW_JUMP_RAD and valley < 2.0 * (1.0 - least_cosine):
+            return CellState.EXTREME, -1, 0
+        if valley < 0.0:
+            extreme, at_row = JUMP, 0
     return (CellState.EXTREME, extreme, at_row) if extreme >= 0 else (state, -1, 0)

@@ -7,7 +7,7 @@ from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.approach.uncertainty.robustness import robust_arcs
 from solver.problem.problem import Problem
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import looked_at_retreats
 from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array
@@ -16,7 +16,7 @@ from solver.robots.model import Array
 def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
     """The feasible arcs of every target of a problem by its id, empty where it has none.
 
-    They are those of the task without a strike zone and a tilt tolerance, at `path_points` rows.
+    They are those of the task without a strike zone and a tilt tolerance.
 
     Raises:
         UnsupportedKinematics: the robot has no closed form.
@@ -26,7 +26,7 @@ def feasible_arcs(problem: Problem) -> dict[str, tuple[Arc, ...]]:
 
 def arcs_of_packed(problem: Problem, numbers: Array) -> dict[str, tuple[Arc, ...]]:
     """`feasible_arcs` for targets that are packed already."""
-    targets, retreats = problem.targets, even_retreats(problem.options)
+    targets, retreats = problem.targets, looked_at_retreats(problem.options)
     table = arcs_of_many(numbers, retreats, jump_cosines(retreats))
     found: dict[str, list[Arc]] = {target.id: [] for target in targets}
     names = limit_names(problem.robot)

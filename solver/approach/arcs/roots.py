@@ -10,9 +10,9 @@ import numpy as np
 from solver.approach.arcs.cells import ARC_NODES
 from solver.approach.arcs.tolerances import (
     ARC_END_RAD,
-    EXTREME_ANGLE_RAD,
     PULL_IN_STEPS,
     ROOT_STEPS,
+    STRETCHED_SINE,
 )
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
@@ -22,10 +22,12 @@ from solver.approach.arcs.turns import (
     path_columns,
     path_margins,
     row_margin,
+    row_room,
     turns_along_path,
     write_turns,
 )
-from solver.approach.task.constraints import JUMP
+from solver.approach.task.constraints import JUMP, REACH
+from solver.approach.task.packed import unpack_geometry
 from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import kernel
 from solver.robots.model import Array
@@ -91,8 +93,10 @@ def single_margin(task, scratch, angle, row, arm, wrist, i):
 
 
 @kernel
-def extreme_margin(task, scratch, arm, wrist, i, row, low, high, sign):
+def extreme_margin(task, scratch, arm, wrist, i, row, low, high, sign, bracket):
     """Golden section for the largest (sign 1) or smallest (-1) margin; stops where it crosses 0.
+
+    It ends in a bracket that narrow [rad].
 
     Returns the angle and sign times the margin there.
     """
@@ -100,7 +104,7 @@ def extreme_margin(task, scratch, arm, wrist, i, row, low, high, sign):
     x1, x2 = b - _GOLDEN * (b - a), a + _GOLDEN * (b - a)
     f1 = sign * single_margin(task, scratch, x1, row, arm, wrist, i)
     f2 = sign * single_margin(task, scratch, x2, row, arm, wrist, i)
-    while b - a > EXTREME_ANGLE_RAD and max(f1, f2) <= 0.0:
+    while b - a > bracket and max(f1, f2) <= 0.0:
         if f1 >= f2:
             b, x2, f2 = x2, x1, f1
             x1 = b - _GOLDEN * (b - a)
@@ -161,6 +165,18 @@ def worst_constraint(task, turns, wrist, first, last, margins):
 
 
 @kernel
+def stretched(task, turns):
+    """Whether the elbow is all but stretched or folded in the row where joints turn fastest."""
+    g, fastest, least = unpack_geometry(task.numbers), 0, math.inf
+    for n in range(len(task.retreats)):
+        room = row_room(g, turns, n)
+        if room < least:
+            fastest, least = n, room
+    cos3, sin3 = turns[4, fastest], turns[5, fastest]
+    return abs(sin3 * g.cos_beta + cos3 * g.sin_beta) < STRETCHED_SINE
+
+
+@kernel
 def pull_in(
     task, scratch, arm, wrist, first, last, start, end, at_start, at_end, start_margins, end_margins
 ):
@@ -175,6 +191,8 @@ def pull_in(
     for _ in range(PULL_IN_STEPS * CONSTRAINTS):
         worst, row, least = worst_constraint(task, turns, wrist, first, last, margins)
         if worst < 0:
+            if by == JUMP and angle != start and stretched(task, turns):
+                by = REACH
             return angle, by, True
         if worst == JUMP:
             at_other, at_this = end_margins[JUMP], start_margins[JUMP]

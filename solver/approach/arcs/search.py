@@ -22,8 +22,13 @@ from solver.approach.arcs.cells import (
     close_cells,
     path_state,
 )
-from solver.approach.arcs.roots import ARMS, extreme_margin, tighten
-from solver.approach.arcs.tolerances import CELL_STACK, EXTREME_ANGLE_RAD, NARROWEST_CELL_RAD
+from solver.approach.arcs.roots import ARMS, extreme_margin, root, single_margin, tighten
+from solver.approach.arcs.tolerances import (
+    CELL_STACK,
+    EXTREME_ANGLE_RAD,
+    NARROWEST_ARC_RAD,
+    NARROWEST_CELL_RAD,
+)
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
     path_margins,
@@ -168,6 +173,36 @@ def close_turn(arcs, start, count):
 
 
 @kernel
+def append_sliver(task, scratch, arm, wrist, low, high, arcs, start, count):
+    """Appends what is feasible of a cell no wider than NARROWEST_CELL_RAD whose ends are too fast.
+
+    A cut-in that ends just before a straight wrist is slow where it goes straight towards it.
+    Returns the new count.
+    """
+    where, room = extreme_margin(
+        task, scratch, arm, wrist, JUMP, 0, low, high, 1.0, NARROWEST_ARC_RAD
+    )
+    if room < 0.0:
+        return count
+    turns_along_path(task, where, arm, scratch.work)
+    path_margins(task, scratch.work, wrist, scratch.work_margins)
+    if scratch.work_margins.min() < 0.0:
+        return count
+    ends = (low, high)
+    first, last = where, where
+    for side in range(2):
+        beyond = single_margin(task, scratch, ends[side], 0, arm, wrist, JUMP)
+        end = ends[side]
+        if beyond < 0.0:
+            end = root(task, scratch, arm, wrist, JUMP, 0, end, beyond, where, room)
+        if side == 0:
+            first = end
+        else:
+            last = end
+    return append_arc(arcs, start, count, arm, wrist, first, last, JUMP, JUMP)
+
+
+@kernel
 def push(stack, top, low, high, by_low, by_high):
     """Writes a cell, and what ends it at both sides, to a row of the stack."""
     stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3] = low, high, by_low, by_high
@@ -215,12 +250,17 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
                 top += 1
                 continue
         if width < NARROWEST_CELL_RAD or top + 2 > len(stack):
-            continue  # a straight wrist, where no angle keeps its branch
+            if max(margins[0, JUMP], margins[1, JUMP]) < 0.0:
+                count = append_sliver(task, scratch, arm, wrist, a, b, arcs, start, count)
+            continue
         if state == CellState.EXTREME and i >= 0:
             sign = 1.0
-            if i != JUMP and row_margin(task, paths[1], row, wrist, i) >= 0.0:
+            at_end = margins[0, JUMP] if i == JUMP else row_margin(task, paths[1], row, wrist, i)
+            if at_end >= 0.0:
                 sign = -1.0
-            where, value = extreme_margin(task, scratch, arm, wrist, i, row, a, b, sign)
+            where, value = extreme_margin(
+                task, scratch, arm, wrist, i, row, a, b, sign, EXTREME_ANGLE_RAD
+            )
             if sign > 0.0 and value < 0.0:
                 continue
             if min(where - a, b - where) > EXTREME_ANGLE_RAD:

@@ -10,19 +10,28 @@ CLEAR_MARGIN: Final = 0.1
 """Margin [difference of cosines, or m] at both ends of a cell above which a joint is not looked at
 in each row: it would have to turn back within 5 degrees of approach angle."""
 
+CLEAR_ROOM: Final = 0.1
+"""Room below the highest joint rate [a sine, see `rate_room`] at both ends of a cell above which
+none is exceeded in between: the tool turns by 0.04 rad from an end to the middle, a wrist too."""
+
 ROUND_TURN_COSINE: Final = -0.6
 """Cosine of half a joint's range below which it can be inside its limits at both ends of a cell
 and have passed what it may not in between, without turning by CELL_SWING_COSINE."""
 
-NARROW_JUMP_RAD: Final = 3e-3
-"""Width to which cells with a jump at both ends are halved before slopes are believed [rad]."""
+NARROW_JUMP_RAD: Final = 3e-4
+"""Width to which cells next to the edge of reach, with a joint too fast at both ends, are halved
+before slopes are believed [rad]."""
 
-STEEPEST_JUMP: Final = 4.0
-"""How fast the margin of a jump (a difference of cosines) may rise with the angle [1/rad]; where it
-would have to rise faster between the ends of a cell, the whole cell jumps."""
+STRETCHED_SINE: Final = 0.1
+"""Sine of the elbow's angle below which an arc that its rate ends is said to end at the reach: it
+is stretched, or folded, within 0.1 rad."""
 
 NARROWEST_CELL_RAD: Final = 1e-6
 """Cells are not halved further [rad]: a hundredth of the narrowest arc that may not be missed."""
+
+NARROWEST_ARC_RAD: Final = 1e-9
+"""Width of an arc beside a straight wrist that may not be missed [rad]: a cut-in that ends a
+micrometre before one is slow in so little."""
 
 EXTREME_ANGLE_RAD: Final = 1e-7
 """Width to which an extremum of a margin is bracketed [rad]; the value is then good to 1e-14."""

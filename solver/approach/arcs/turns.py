@@ -21,13 +21,14 @@ from solver.approach.task.packed import (
 from solver.compiled import inlined, kernel, minimum
 from solver.kinematics.arctangent import atan2
 from solver.kinematics.spherical_wrist import arm_turns, elbow_turns, wrist_turns
+from solver.kinematics.straight_rates import ahead_share, rate_room, swing_room
 from solver.tolerances import SINGULAR_WRIST
 
 TURN_ROWS = 14
 
 CONSTRAINTS = JUMP + 1
 """Margins of one branch: six joints (cosine form), the reach [m], the shoulder's offset beside the
-waist's axis [m], the wrist jump (cosine form)."""
+waist's axis [m], and how fast joints turn along the cut-in."""
 
 ROW_CONSTRAINTS = 11
 WRIST_ROWS = 5
@@ -95,8 +96,8 @@ def turns_at_angles(task, angles, count, retreat, arm, turns):
 
 @inlined
 def path_columns(rows):
-    """Columns of the turns of a cut-in of that many rows: enough to take the vector loop."""
-    return max(24, 8 * ((rows + 7) // 8))
+    """Columns of the turns of a cut-in of that many rows: a multiple of what a vector holds."""
+    return max(16, 8 * ((rows + 7) // 8))
 
 
 @kernel
@@ -165,27 +166,61 @@ def path_margins(task, turns, wrist, margins):
     margins[JUMP] = jump_margin(task, turns, wrist)
 
 
+@inlined
+def row_room(g, turns, n):
+    """What joints are short of JOINT_RATE_RAD_M in column n; the same for both wrists."""
+    return rate_room(
+        g, turns[2, n], turns[3, n], turns[4, n], turns[5, n],
+        turns[6, n], turns[7, n], turns[8, n], turns[9, n],
+    )  # fmt: skip
+
+
 @minimum
 def jump_margin(task, turns, wrist):
-    """Smallest margin of the turns from row to row, as a difference of cosines.
+    """Smallest room that joints have below JOINT_RATE_RAD_M, in the rows and between them.
 
-    A joint that is inside its limits in two rows, and outside on the short way between them, has
-    jumped as well.
+    Joints 1, 4 and 6 swing by half a turn in no distance where the wrist centre passes the waist's
+    axis, or the wrist is straight: they are slow in all rows then, so they are looked at between
+    rows too, as if the row's direction went straight on to the next one's. What that is off by
+    is left to those who look closer. A joint that is inside its limits in two rows, and outside on
+    the short way between them, has jumped as well.
     """
     steps, least, widest = len(task.retreats) - 1, math.inf, math.inf
+    g = unpack_geometry(task.numbers)
+    for n in range(steps + 1):
+        least = min(least, row_room(g, turns, n))
+    for n in range(steps):
+        m = n + 1
+        spacing = task.retreats[n] - task.retreats[m]
+        sin5, sin5_next = turns[9, n], turns[9, m]
+        at4 = swing_room(
+            sin5 * turns[6, n], sin5 * turns[7, n],
+            sin5_next * turns[6, m], sin5_next * turns[7, m], spacing,
+        )  # fmt: skip
+        at6 = swing_room(
+            sin5 * turns[10, n], sin5 * turns[11, n],
+            sin5_next * turns[10, m], sin5_next * turns[11, m], spacing,
+        )  # fmt: skip
+        x, x_next = ahead_of_waist(g, turns, n), ahead_of_waist(g, turns, m)
+        at1 = swing_room(
+            x * turns[0, n], x * turns[1, n], x_next * turns[0, m], x_next * turns[1, m], spacing
+        )
+        least = min(min(least, at1), min(at4, at6))
     for n in range(steps):
         widest = min(widest, task.cos_steps[n])
     for i in range(6):
-        for n in range(steps):
-            cosines = turns[2 * i, n] * turns[2 * i, n + 1]
-            sines = turns[2 * i + 1, n] * turns[2 * i + 1, n + 1]
-            least = min(least, cosines + sines - task.cos_steps[n])
         half = task.numbers[COS_HALF + i]
         if half < 0.0 and widest < 2 * half * half - 1.0:
             for n in range(steps):
                 if passes_behind(task, turns, n, turns, n + 1, wrist, i):
                     least = min(least, -1.0)
     return least
+
+
+@inlined
+def ahead_of_waist(g, turns, n):
+    """How far the wrist centre is ahead of the waist's axis in column n, over the arm's length."""
+    return ahead_share(g, turns[2, n], turns[3, n], turns[4, n], turns[5, n])
 
 
 @kernel
@@ -207,17 +242,17 @@ def passes_behind(task, left, m, right, n, wrist, i):
 
 
 @minimum
-def swings(before, after, rows, least_cosine):
-    """Whether a joint turns far between two angles in some row: arccos(least_cosine) or more.
+def turn_cosine(before, after, rows):
+    """Cosine of the farthest that a joint turns between two angles in some row.
 
-    It does beside a straight wrist, or with the wrist centre near the waist's axis.
+    It turns far beside a straight wrist, or with the wrist centre near the waist's axis.
     """
     least = 1.0
     for i in range(6):
         for n in range(rows):
             change = before[2 * i, n] * after[2 * i, n] + before[2 * i + 1, n] * after[2 * i + 1, n]
             least = min(least, change)
-    return least < least_cosine
+    return least
 
 
 @inlined

@@ -17,9 +17,11 @@ from solver.approach.bounds.intervals import (
     square,
     subtract,
 )
+from solver.approach.bounds.rates import too_fast
 from solver.approach.bounds.tolerances import CERTIFICATE_PIECES, SUM_STEPS
 from solver.approach.task.feasibility import effort, limit_margin, posture, tool_axes, trace
 from solver.compiled import kernel
+from solver.kinematics.straight_rates import posture_rate_room
 from solver.problem.effort import joint_cost
 from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, REACH_ROUNDING_M
 
@@ -42,8 +44,8 @@ def turns_inside(task, joint, low, high):
 
 @kernel
 def excluded(task, q, reach):
-    """Whether no posture in the intervals q, on any turns, is inside the reach and the limits."""
-    if reach < -REACH_ROUNDING_M:
+    """Whether no posture in the intervals q, on any turns, holds: reach, limits, joint rates."""
+    if reach < -REACH_ROUNDING_M or too_fast(task.geometry, q):
         return True
     for i in range(6):
         first, last = turns_inside(task, i, q[i, 0], q[i, 1])
@@ -135,17 +137,18 @@ def least_effort_in_cell(task, half, turns, q, slopes, middle):
 
 @kernel
 def worst_row(task, angle, branch, rows):
-    """The row of a traced cut-in furthest outside reach or limits, and whether on every turn."""
+    """The row of a traced cut-in furthest from holding, and whether that is so on every turn."""
     axes, q = np.empty((3, 3)), np.empty(6)
     tool_axes(task, angle, axes)
     worst, margin, on_every_turn = 0, math.inf, False
     for n in range(len(rows)):
         reach = posture(task, axes, task.retreats[n], branch, q)
         inside, joint = limit_margin(task, rows[n])
-        if min(reach, inside) < margin:
-            worst, margin = n, min(reach, inside)
+        room = posture_rate_room(task.geometry, rows[n])
+        if min(min(reach, inside), room) < margin:
+            worst, margin = n, min(min(reach, inside), room)
             first, last = turns_inside(task, joint, rows[n, joint], rows[n, joint])
-            on_every_turn = reach < 0 or first > last
+            on_every_turn = reach < 0 or room < 0 or first > last
     return worst, on_every_turn
 
 

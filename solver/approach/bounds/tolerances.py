@@ -2,9 +2,14 @@
 
 from typing import Final
 
+from solver.tolerances import JOINT_RATE_RAD_M, RATE_EXCESS_SHARE
+
 CERTIFICATE_GAP: Final = 2e-7
 """A proven bound that is nearer to the least effort found than this, relative, is near enough: half
 of the 1e-6 that `certify` promises."""
+
+ACCEPTED_RATE_RAD_M: Final = JOINT_RATE_RAD_M * (1.0 + 1.1 * RATE_EXCESS_SHARE)
+"""Joint rate above which no approach is planned [rad/m]: the verifier's, and rounding."""
 
 CERTIFICATE_CELLS: Final = 20_000
 """Cells of approach angles looked at for one target before the bound so far is returned."""

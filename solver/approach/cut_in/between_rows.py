@@ -1,8 +1,12 @@
-"""Kernel: whether a cut-in sampled at even rows may break a limit between two of them."""
+"""Kernels: whether a cut-in sampled at even rows may break a limit between two of them."""
 
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
-from solver.approach.cut_in.tolerances import BETWEEN_ROWS_CUSHION, BETWEEN_ROWS_REACH
+from solver.approach.cut_in.tolerances import (
+    BETWEEN_ROWS_CUSHION,
+    BETWEEN_ROWS_REACH,
+    MARGIN_CUSHION,
+)
 from solver.compiled import kernel
 
 
@@ -40,7 +44,24 @@ def may_leave_between(rows, lower, upper):
 
 
 @kernel
-def many_may_leave_between(paths, lower, upper, leaves):
-    """Writes `may_leave_between` of n cut-ins, shape (n, rows, 6), to `leaves`, shape (n,)."""
-    for k in range(len(paths)):
-        leaves[k] = may_leave_between(paths[k], lower, upper)
+def may_fall_below_zero_between(room):
+    """Whether a margin may be negative between two even rows: of the reach, or a rate's room.
+
+    Args:
+        room: the margin in each row, shape (rows,).
+    """
+    count = len(room)
+    for n in range(count - 1):
+        slope = room[n + 1] - room[n]
+        for middle in (max(n, 1), min(n + 1, count - 2)):
+            bend = room[middle + 1] - 2 * room[middle] + room[middle - 1]
+            if bend <= 0.0:
+                continue
+            place = 0.5 - slope / bend
+            if place < -BETWEEN_ROWS_REACH or place > 1.0 + BETWEEN_ROWS_REACH:
+                continue
+            place = min(max(place, 0.0), 1.0)
+            vertex = room[n] + slope * place + bend / 2 * place * (place - 1.0)
+            if vertex < MARGIN_CUSHION * bend:
+                return True
+    return False

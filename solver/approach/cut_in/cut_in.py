@@ -1,29 +1,37 @@
 """The straight cut-in of a candidate: its rows, its motion as executed, how straight that is."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.cut_in.between_rows import may_leave_between
-from solver.approach.cut_in.tolerances import DEVIATION_SAMPLES, EVEN_ROWS_M, EXCHANGE_ZOOMS
+from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
+from solver.approach.cut_in.tolerances import (
+    DEVIATION_SAMPLES,
+    EVEN_ROWS_M,
+    EXCHANGE_ZOOMS,
+    RATE_ROOM_EXCESS,
+)
 from solver.approach.task.candidate import Candidate
-from solver.approach.task.feasibility import retreat_from, retreat_from_many
+from solver.approach.task.feasibility import retreat_from, retreat_from_many, retreat_reach
 from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import EXCHANGE_DENSITY
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import forward_kinematics, many_poses, tool_centres
-from solver.kinematics.numerical import postures_behind
+from solver.kinematics.numerical import postures_behind, rates_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
+from solver.kinematics.straight_rates import rows_rate_room
 from solver.motion.timing import TimedRows, time_cut_in
 from solver.problem.options import Options
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import even_retreats, looked_at_retreats
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
 from solver.tolerances import (
+    JOINT_RATE_RAD_M,
     LEAST_REFINED_ROWS,
     LIMIT_EXCESS_RAD,
+    REACH_ROUNDING_M,
     TRAJECTORY_HALVINGS,
     TRAJECTORY_STEP_S,
 )
@@ -64,9 +72,11 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
         return CutIn(
             rows, None, *refined_rows(task.robot, task.tool, options, rows, candidate.branch, line)
         )
+    # Not those that are sent: how long it takes does not depend on them.
+    looked_at = path(options.standoff_m - looked_at_retreats(options))
     step_s = TRAJECTORY_STEP_S
     for _ in range(TRAJECTORY_HALVINGS + 1):
-        motion = time_cut_in(task.robot, options.standoff_m, rows, path, step_s)
+        motion = time_cut_in(task.robot, options.standoff_m, looked_at, path, step_s)
         deviation = line_deviation(task.robot, task.tool, motion.joints, pose[:3, 3], pose[:3, 2])
         if deviation <= options.straightness_m:
             break
@@ -198,27 +208,90 @@ def line_deviations(
     return np.asarray(np.sqrt(np.max(np.sum(across * across, axis=0), axis=1)))
 
 
-def broken_limit(task: ApproachTask, candidate: Candidate) -> float | None:
-    """The retreat between two rows at which a joint is furthest beyond its limit, if one is [m].
+def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
+    """The retreat between two rows at which a cut-in is furthest from feasible, if it is one [m].
 
-    The limits are those of the task, less the margin asked for.
+    There the wrist centre is out of reach, or a joint is beyond its limits, which are those of the
+    task, less the margin asked for, or else one turns faster than JOINT_RATE_RAD_M.
     """
+    robot, tool, branch = task.robot, task.tool, candidate.branch
+
+    def reach(retreats: Array) -> Array:
+        return reach_behind(robot, tool, candidate.thinning_joints, branch, retreats)
+
+    def inside(retreats: Array) -> Array:
+        return np.asarray(task.inside(_postures(task, candidate, retreats)).min(axis=1))
+
+    def slower(retreats: Array) -> Array:
+        return rate_room(robot, tool, branch, _postures(task, candidate, retreats))
+
     coarse = np.asarray(task.retreats_m)
     spacing = np.diff(coarse)
-    even = bool(np.all(np.abs(spacing - spacing[0]) <= EVEN_ROWS_M))
-    if even and not may_leave_between(_postures(task, candidate, coarse), task.lower, task.upper):
-        return None
+    if np.all(np.abs(spacing - spacing[0]) <= EVEN_ROWS_M):
+        leaves = may_leave_between(_postures(task, candidate, coarse), task.lower, task.upper)
+        margins = (reach(coarse), slower(coarse))
+        if not leaves and not any(may_fall_below_zero_between(margin) for margin in margins):
+            return None
+    for measure, allowed in (
+        (reach, REACH_ROUNDING_M), (inside, LIMIT_EXCESS_RAD / 2), (slower, RATE_ROOM_EXCESS),
+    ):  # fmt: skip
+        retreat, value = _lowest(coarse, measure)
+        if value < -allowed:
+            return retreat
+    return None
+
+
+def _lowest(coarse: Array, measure: Callable[[Array], Array]) -> tuple[float, float]:
+    """The retreat at which a measure of retreats, shape (n,) to (n,), is least, and its value."""
     shares = np.arange(EXCHANGE_DENSITY)[:, None] / EXCHANGE_DENSITY
     retreats = np.append((coarse[:-1] + shares * np.diff(coarse)).T.ravel(), 0.0)
     for _ in range(EXCHANGE_ZOOMS):
-        inside = task.inside(_postures(task, candidate, retreats)).min(axis=1)
-        k = int(inside.argmin())
+        k = int(measure(retreats).argmin())
         around = retreats[max(k - 1, 0)], retreats[min(k + 1, len(retreats) - 1)]
         finer = np.linspace(*around, 2 * EXCHANGE_DENSITY + 1)
         retreats = np.unique(np.concatenate((retreats, finer)))[::-1]
-    worst = task.inside(_postures(task, candidate, retreats)).min(axis=1)
-    k = int(worst.argmin())
-    return float(retreats[k]) if worst[k] < -LIMIT_EXCESS_RAD / 2 else None
+    values = measure(retreats)
+    k = int(values.argmin())
+    return float(retreats[k]), float(values[k])
+
+
+def reach_behind(
+    robot: Robot,
+    tool: Tool,
+    thinning: Sequence[float] | Array,
+    branch: int | None,
+    retreats: Array,
+) -> Array:
+    """How far the wrist centre is inside the reach behind a thinning posture, shape (n,) [m].
+
+    Arguments are those of `retreat_rows`. Infinite for an arm without a closed form, whose postures
+    miss the line where they do not reach it.
+    """
+    margins = np.full(len(retreats), np.inf)
+    if branch is None:
+        return margins
+    posture = np.asarray(thinning, dtype=np.float64)
+    if (rail := rail_of(robot, tool)) is not None:
+        robot, posture = rail.arm_at(float(posture[0])), posture[1:]
+    pose = inverse(robot.mount) @ forward_kinematics(robot, tool, posture)
+    retreat_reach(wrist_geometry(robot, tool), pose, branch, retreats, margins)
+    return margins
+
+
+def rate_room(robot: Robot, tool: Tool, branch: int | None, rows: Array) -> Array:
+    """What joints are short of JOINT_RATE_RAD_M in each row of a cut-in, shape (rows,).
+
+    A sine, or for an arm without a closed form (branch None) a share of it; below zero where one
+    turns faster. What slides has no such limit.
+    """
+    if branch is None:
+        fastest = np.max(rates_behind(robot, tool, rows) * robot.turning, axis=1)
+        return np.asarray(1.0 - fastest / JOINT_RATE_RAD_M)
+    if (rail := rail_of(robot, tool)) is not None:
+        robot, rows = rail.arm, np.ascontiguousarray(rows[:, 1:])
+    room = np.empty(len(rows))
+    rows_rate_room(wrist_geometry(robot, tool), rows, room)
+    return room
 
 
 def _postures(task: ApproachTask, candidate: Candidate, retreats: Array) -> Array:

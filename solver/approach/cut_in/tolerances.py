@@ -12,9 +12,17 @@ them."""
 BETWEEN_ROWS_CUSHION: Final = 0.05
 """Share of a joint's second difference that its parabola may be wrong by between two rows."""
 
-EXCHANGE_ZOOMS: Final = 4
+MARGIN_CUSHION: Final = 0.5
+"""Share of the second difference of the reach, or of a rate's room, that its parabola may be wrong
+by between two rows: beside a straight wrist or elbow it is a hyperbola."""
+
+EXCHANGE_ZOOMS: Final = 5
 """How often the place between two rows where a limit is broken most is narrowed, eightfold each
-time: 2 mm to 0.5 um."""
+time: 3 mm to 0.1 um, as far as a rate of 250 rad/m has to be known to seven digits."""
+
+RATE_ROOM_EXCESS: Final = 1e-9
+"""How far below zero the room of a rate may be [a sine, see `rate_room`]: where joints turn as fast
+as they may the sine is a hundredth, so that is 1e-7 of the rate, a tenth of what is verified."""
 
 DEVIATION_SAMPLES: Final = 3
 """Postures between two rows at which the distance from the straight line is measured. It is nearly

@@ -16,6 +16,7 @@ from solver.kinematics.numerical import (
     locate,
     polish,
     postures_behind,
+    rates_behind,
 )
 from solver.problem.effort import joint_costs
 from solver.problem.solution import Reason
@@ -175,11 +176,11 @@ def _cut_in_holds(task: ApproachTask, rows: Array, stages: _Stages) -> bool:
     if missed[0] <= POSITION_ERROR_M:
         stages.standby_margin = max(stages.standby_margin, float(inside[0]))
         stages.standby |= bool(inside[0] >= -LIMIT_EXCESS_RAD / 2)
-    steps = np.abs(np.diff(rows, axis=0)).max(axis=1, initial=0.0)
+    rates = rates_behind(task.robot, task.tool, rows) * task.robot.turning
     if (
         missed.max() > POSITION_ERROR_M
         or inside.min() < -LIMIT_EXCESS_RAD / 2
-        or np.any(steps > JOINT_RATE_RAD_M * -np.diff(retreats))
+        or rates.max() > JOINT_RATE_RAD_M
         or not same_side(task.robot, task.tool, rows)
     ):
         return False

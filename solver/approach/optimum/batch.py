@@ -11,7 +11,7 @@ from solver.approach.task.packed import jump_cosines
 from solver.approach.task.packing import packed_targets
 from solver.approach.tolerances import EXCHANGE_DENSITY
 from solver.problem.problem import Problem
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import even_retreats, looked_at_retreats
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from solver.tolerances import BATCH_PART
@@ -26,7 +26,8 @@ class Optima:
         tool_sides: 1 or -1, shape (n,).
         branches: 0 to 7, NO_BRANCH where a target has no feasible arc, shape (n,).
         efforts: shape (n,).
-        paths: the cut-ins, standby first, shape (n, rows, 6) [rad].
+        paths: the cut-ins, standby first, shape (n, path_points, 6) [rad].
+        suspicious: whether a cut-in may be infeasible between what was looked at, shape (n,).
         refined: cells of the effort that were looked at closely, shape (n,).
     """
 
@@ -35,6 +36,7 @@ class Optima:
     branches: NDArray[np.int64]
     efforts: Array
     paths: Array
+    suspicious: NDArray[np.bool_]
     refined: NDArray[np.int64]
 
 
@@ -49,14 +51,15 @@ def closed_form_optima(
         directions: branch directions of any length, shape (n, 3).
         references: postures from which effort counts, shape (n, 6) or (6,) [rad].
     """
-    retreats = even_retreats(problem.options)
+    retreats, sent = looked_at_retreats(problem.options), even_retreats(problem.options)
     n = len(positions)
     found = (
         np.empty(n),
         np.ones(n, dtype=np.int64),
         np.empty(n, dtype=np.int64),
         np.empty(n),
-        np.empty((n, len(retreats), 6)),
+        np.empty((n, len(sent), 6)),
+        np.empty(n, dtype=np.bool_),
         np.empty(n, dtype=np.int64),
     )
     everywhere = np.broadcast_to(references, (n, 6))
@@ -64,7 +67,7 @@ def closed_form_optima(
         part = slice(first, first + BATCH_PART)
         numbers = packed_targets(problem, positions[part], directions[part], everywhere[part])
         fields = (field[part] for field in found)
-        optimise(numbers, retreats, jump_cosines(retreats), *fields)
+        optimise(numbers, retreats, jump_cosines(retreats), sent, *fields)
     return Optima(*found)
 
 
@@ -74,7 +77,7 @@ class ChosenPaths:
 
     Attributes:
         joints: standby first, shape (n, rows, 6) [rad].
-        suspicious: whether a joint may leave its limits between two rows, shape (n,).
+        suspicious: whether a cut-in may be infeasible between what was looked at, shape (n,).
     """
 
     joints: Array
@@ -87,11 +90,18 @@ def chosen_paths(
     """The cut-ins of n packed targets, each on an arc of its own at an angle, shape (n,) [rad]."""
     sides = np.array([(1 - arc.tool_side) // 2 for arc in arcs])
     branches = np.array([arc.branch for arc in arcs])
-    retreats = even_retreats(problem.options)
-    n = len(arcs)
-    joints, suspicious = np.empty((n, len(retreats), 6)), np.empty(n, dtype=np.bool_)
-    own = np.ascontiguousarray(numbers[sides, np.arange(n)])
-    paths_of_many(own, branches, angles_rad, retreats, jump_cosines(retreats), joints, suspicious)
+    retreats = looked_at_retreats(problem.options)
+    own = np.ascontiguousarray(numbers[sides, np.arange(len(arcs))])
+    return _paths(own, branches, angles_rad, retreats, even_retreats(problem.options))
+
+
+def _paths(
+    numbers: Array, branches: NDArray[np.int64], angles_rad: Array, retreats: Array, sent: Array
+) -> ChosenPaths:
+    n = len(numbers)
+    joints, suspicious = np.empty((n, len(sent), 6)), np.empty(n, dtype=np.bool_)
+    steps = jump_cosines(retreats)
+    paths_of_many(numbers, branches, angles_rad, retreats, steps, sent, joints, suspicious)
     return ChosenPaths(joints, suspicious)
 
 
@@ -102,7 +112,7 @@ def finer_paths(
     optima: Optima,
     which: NDArray[np.int64],
 ) -> ChosenPaths:
-    """Cut-ins of some of many targets' optima, with EXCHANGE_DENSITY rows for each one.
+    """Cut-ins of some of many targets' optima, looked at EXCHANGE_DENSITY times as closely.
 
     Arguments are those of `closed_form_optima` and its answer; `which` are indices of targets.
     """
@@ -111,16 +121,11 @@ def finer_paths(
         problem, positions[which], directions[which], np.asarray(problem.start)
     )
     own = np.ascontiguousarray(numbers[(1 - optima.tool_sides[which]) // 2, np.arange(len(which))])
-    rows = (options.path_points - 1) * EXCHANGE_DENSITY + 1
-    retreats = even_retreats(options, rows)
-    joints, suspicious = np.empty((len(which), rows, 6)), np.empty(len(which), dtype=np.bool_)
-    paths_of_many(
+    rows = (len(looked_at_retreats(options)) - 1) * EXCHANGE_DENSITY + 1
+    return _paths(
         own,
         optima.branches[which],
         optima.angles_rad[which],
-        retreats,
-        jump_cosines(retreats),
-        joints,
-        suspicious,
+        even_retreats(options, rows),
+        even_retreats(options),
     )
-    return ChosenPaths(joints, suspicious)

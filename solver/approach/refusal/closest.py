@@ -10,7 +10,14 @@ from enum import IntEnum
 
 import numpy as np
 
-from solver.approach.task.feasibility import limit_margin, posture, thinning, tool_axes, trace
+from solver.approach.task.feasibility import (
+    fastest_joint,
+    limit_margin,
+    posture,
+    thinning,
+    tool_axes,
+    trace,
+)
 from solver.approach.tolerances import ANGLE_STEP_RAD
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import arm_turns, wrap
@@ -20,8 +27,8 @@ from solver.tolerances import JOINT_RATE_RAD_M
 class Stage(IntEnum):
     """What an approach fails at, in the order in which it is looked at, or nothing.
 
-    Margins are lengths [m] for the reach and angles [rad] for limits; for a jump the travel allowed
-    between two rows less the travel [rad].
+    Margins are lengths [m] for the reach and angles [rad] for limits; for a jump the rate allowed
+    less the joint's [rad/m].
     """
 
     REACH_AT_THINNING = 0
@@ -73,12 +80,11 @@ def failure(task, angle, branch, rows):
             worst, limiting, row = inside, joint, n
     if row >= 0:
         return Stage.LIMIT_IN_CUT_IN, worst, limiting, row
-    for n in range(last):
-        allowed = JOINT_RATE_RAD_M * (task.retreats[n] - task.retreats[n + 1])
-        for i in range(6):
-            left = allowed - abs(rows[n, i] - rows[n + 1, i])
-            if left < worst:
-                worst, limiting, row = left, i, n
+    rate, limiting, row = fastest_joint(task.geometry, task.retreats, rows)
+    if rate > JOINT_RATE_RAD_M:
+        worst = JOINT_RATE_RAD_M - rate
+    else:
+        row = -1
     if row >= 0:
         return Stage.JUMP_IN_CUT_IN, worst, limiting, row
     return Stage.FEASIBLE, 0.0, 0, 0

@@ -8,7 +8,7 @@ import numpy as np
 from solver.approach.arcs.arcs import sample_angles, task_arcs
 from solver.approach.refusal.closest import Stage, closest_failure
 from solver.approach.refusal.nearest_change import nearest_angle, nearest_displacement
-from solver.approach.refusal.tolerances import DIAGNOSED_ANGLES
+from solver.approach.refusal.tolerances import DIAGNOSED_ANGLES, HALF_TURN_DEG
 from solver.approach.task.constraints import Constraint
 from solver.approach.task.feasibility import trace
 from solver.approach.task.task import ApproachTask
@@ -18,6 +18,7 @@ from solver.approach.uncertainty.robust_search import robust_pieces
 from solver.approach.uncertainty.robustness import needed_margin
 from solver.problem.solution import Arc, Reason
 from solver.robots.model import Array
+from solver.tolerances import JOINT_RATE_RAD_M
 
 
 def diagnose(task: ApproachTask, tried: Array | None = None) -> Reason:
@@ -80,11 +81,13 @@ def _stage_reason(task: ApproachTask, stage: Stage, margin: float, joint: int, r
             detail = f"between feasible ends {beyond}, {behind}"
             return Reason("cut_in_infeasible", detail, joint=name, margin_rad=margin)
         case _:
+            each_mm = np.degrees(np.array([JOINT_RATE_RAD_M - margin, JOINT_RATE_RAD_M])) / 1000
+            turn = f"{each_mm[0]:.1f} degrees" if each_mm[0] < HALF_TURN_DEG else "half a turn"
             detail = (
-                f"{name} jumps, {behind}: it turns {np.degrees(-margin):.1f} degrees more between "
-                "two rows than it may"
+                f"{name} turns too fast, {behind}: by {turn} for each millimetre of the cut-in, "
+                f"where {each_mm[1]:.1f} degrees are allowed"
             )
-            return Reason("cut_in_infeasible", detail, joint=name, margin_rad=margin)
+            return Reason("cut_in_infeasible", detail, joint=name)
 
 
 def _exact(task: ApproachTask) -> ApproachTask:

@@ -1,6 +1,6 @@
 """Kernels: what a displaced target has to meet, as lengths with their gradients.
 
-The joint limits and the reach at some rows of the cut-in, and the travel between two rows. Joint
+The joint limits and the reach at some rows of the cut-in, and how fast joints turn in some. Joint
 constraints are multiplied by half the arm's length, so that all are lengths [m].
 """
 
@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.approach.refusal.tolerances import (
+    NEAREST_DIFFERENCE,
     NEAREST_INSIDE_M,
     NEAREST_INSIDE_RAD,
-    NEAREST_JUMP_SHARE,
+    NEAREST_RATE_ROOM,
     NEAREST_STEEPEST,
 )
 from solver.approach.task.constraints import LIMITS, REACH
@@ -23,8 +24,9 @@ from solver.approach.task.feasibility import CutInTask, posture, tool_axes
 from solver.approach.uncertainty.sensitivity import joint_rates
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
+from solver.kinematics.straight_rates import between_rate_room, posture_rate_room
 from solver.robots.model import Array
-from solver.tolerances import JOINT_RATE_RAD_M, LEAST_DIVISOR
+from solver.tolerances import LEAST_DIVISOR
 
 
 class Watched(NamedTuple):
@@ -32,8 +34,7 @@ class Watched(NamedTuple):
 
     Attributes:
         rows: rows of the cut-in whose limits count, the first `rows_count`, thinning first.
-        jumps: row and joint of each jump that counts, between that row and the next one, the first
-            `jumps_count`, shape (n, 2).
+        jumps: rows in which the joints' rates count, the first `jumps_count`.
         spread: displacement that every limit has to bear [m].
     """
 
@@ -52,7 +53,6 @@ class Scratch(NamedTuple):
     q: Array
     next_q: Array
     rates: Array
-    next_rates: Array
     reach_rates: Array
 
 
@@ -64,7 +64,6 @@ def scratch_arrays():
         np.empty(6),
         np.empty(6),
         np.empty(6),
-        np.empty((6, 4)),
         np.empty((6, 4)),
         np.empty(4),
     )
@@ -129,27 +128,38 @@ def row_constraints(task, turn, retreat, branch, spread, scratch, values, gradie
 
 
 @kernel
-def jump_constraint(task, turn, row, joint, branch, scratch, gradient):
-    """What is left of the travel that one joint may make from a row to the next one, as a length.
+def rate_constraint(task, origin, x, row, branch, scratch, gradient):
+    """What joints are short of the highest rate in one row, as a length, at x = (delta, angle).
 
-    Writes the gradient, shape (4,); returns the length [m].
+    Writes the gradient, shape (4,), from differences; returns the length [m].
     """
-    q, next_q, rates, next_rates = scratch.q, scratch.next_q, scratch.rates, scratch.next_rates
-    retreat, after = task.retreats[row], task.retreats[row + 1]
-    length = task.geometry.tool_length
     scale = (task.geometry.a2 + task.geometry.l3) / 2
-    posture(task, scratch.axes, retreat, branch, q)
-    joint_rates(task.geometry, q, scratch.axes, retreat + length, turn, rates, scratch.reach_rates)
-    posture(task, scratch.axes, after, branch, next_q)
-    joint_rates(
-        task.geometry, next_q, scratch.axes, after + length, turn, next_rates, scratch.reach_rates
-    )
-    travel = wrap(q[joint] - next_q[joint])
-    sign = 1.0 if travel >= 0 else -1.0
     for k in range(4):
-        gradient[k] = -scale * sign * (rates[joint, k] - next_rates[joint, k])
-    allowed = (1.0 - NEAREST_JUMP_SHARE) * JOINT_RATE_RAD_M * (retreat - after)
-    return scale * (allowed - abs(travel))
+        ahead = rate_room_at(task, origin, x, k, NEAREST_DIFFERENCE, row, branch, scratch)
+        behind = rate_room_at(task, origin, x, k, -NEAREST_DIFFERENCE, row, branch, scratch)
+        gradient[k] = scale * (ahead - behind) / (2 * NEAREST_DIFFERENCE)
+    room = rate_room_at(task, origin, x, 0, 0.0, row, branch, scratch)
+    return scale * (room - NEAREST_RATE_ROOM)
+
+
+@kernel
+def rate_room_at(task, origin, x, k, step, row, branch, scratch):
+    """What joints are short of the highest rate in a row, and on to the next one.
+
+    With one of x moved by a step; the task's target is there then. Where the row is out of reach,
+    less by as much as that is of the arm.
+    """
+    for i in range(3):
+        task.position[i] = origin[i] + x[i] + (step if i == k else 0.0)
+    tool_axes(task, x[3] + (step if k == 3 else 0.0), scratch.axes)
+    reach = posture(task, scratch.axes, task.retreats[row], branch, scratch.next_q)
+    room = posture_rate_room(task.geometry, scratch.next_q)
+    if row + 1 < len(task.retreats):
+        posture(task, scratch.axes, task.retreats[row + 1], branch, scratch.q)
+        spacing = task.retreats[row] - task.retreats[row + 1]
+        swing = between_rate_room(task.geometry, scratch.next_q, scratch.q, spacing)
+        room = min(room, min(swing, posture_rate_room(task.geometry, scratch.q)))
+    return room + min(reach, 0.0) / (task.geometry.a2 + task.geometry.l3)
 
 
 @kernel
@@ -185,6 +195,5 @@ def constraints(task, origin, x, turn, branch, watched, scratch, values, gradien
             gradients[LIMITS * w : LIMITS * (w + 1)],
         )
     for w in range(watched.jumps_count):
-        row, joint = watched.jumps[w]
-        j = LIMITS * count + w
-        values[j] = jump_constraint(task, turn, row, joint, branch, scratch, gradients[j])
+        j, row = LIMITS * count + w, watched.jumps[w]
+        values[j] = rate_constraint(task, origin, x, row, branch, scratch, gradients[j])

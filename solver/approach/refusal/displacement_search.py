@@ -28,10 +28,17 @@ from solver.approach.refusal.tolerances import (
     NEAREST_ROUNDS,
     NEAREST_START_INSIDE_M,
     NEAREST_STARTS,
+    NEAREST_TURNS_RAD,
     NEAREST_WIDENING,
 )
 from solver.approach.task.constraints import LIMITS
-from solver.approach.task.feasibility import limit_margin, posture, tool_axes, trace
+from solver.approach.task.feasibility import (
+    fastest_joint,
+    limit_margin,
+    posture,
+    tool_axes,
+    trace,
+)
 from solver.approach.uncertainty.displacement import rows_displacement_margin
 from solver.approach.uncertainty.sensitivity import joint_rates
 from solver.compiled import kernel
@@ -78,9 +85,7 @@ def estimates(task, angles, spread, found, starts):
     origin, moved = task.position, copy_at(task, task.position.copy())
     turn, scratch = np.cross(task.outward, task.sideways), scratch_arrays()
     values, gradients = np.empty(2 * LIMITS), np.empty((2 * LIMITS, 4))
-    ends = Watched(
-        np.array([len(task.retreats) - 1, 0]), 2, np.empty((0, 2), dtype=np.int64), 0, spread
-    )
+    ends = Watched(np.array([len(task.retreats) - 1, 0]), 2, np.empty(0, dtype=np.int64), 0, spread)
     least = math.inf
     for branch in range(8):
         for k in range(len(angles)):
@@ -120,19 +125,6 @@ def broken_row(task, rows):
 
 
 @kernel
-def largest_jump(task, rows):
-    """Row and joint of the largest travel from row to row, for what is allowed there."""
-    most, row, joint = 0.0, 0, 0
-    for n in range(len(rows) - 1):
-        spacing = task.retreats[n] - task.retreats[n + 1]
-        for i in range(6):
-            rate = abs(rows[n, i] - rows[n + 1, i]) / spacing
-            if rate > most:
-                most, row, joint = rate, n, i
-    return row, joint
-
-
-@kernel
 def nearest_displacement(task, branch, start, spread, best, rows):
     """The smallest displacement found on one branch from one start; `rows` is scratch.
 
@@ -143,10 +135,8 @@ def nearest_displacement(task, branch, start, spread, best, rows):
     """
     origin, moved = task.position, copy_at(task, task.position.copy())
     turn, scratch, x = np.cross(task.outward, task.sideways), scratch_arrays(), start.copy()
-    listed, jumps = (
-        np.zeros(NEAREST_ROUNDS + 3, dtype=np.int64),
-        np.zeros((NEAREST_ROUNDS, 2), dtype=np.int64),
-    )
+    listed = np.zeros(NEAREST_ROUNDS + 3, dtype=np.int64)
+    jumps = np.zeros(NEAREST_ROUNDS, dtype=np.int64)
     last = len(task.retreats) - 1
     listed[0], listed[1], listed[2], count, jumped = last, 0, last // 2, 3, 0
     widened = spread
@@ -160,7 +150,7 @@ def nearest_displacement(task, branch, start, spread, best, rows):
         if trace(moved, x[3], branch, task.retreats, rows) < 0:
             where = broken_row(task, rows)
             if where < 0:
-                jumps[jumped] = largest_jump(task, rows)
+                _, _, jumps[jumped] = fastest_joint(task.geometry, task.retreats, rows)
                 jumped += 1
                 continue
             if where in listed[:count]:
@@ -219,4 +209,15 @@ def nearest_of_all(task, angles, spread):
         if feasible and length < best:
             best, best_branch, any_found = length, branch, True
             best_x[:] = x
+    if any_found:
+        # Minima are local: what is found is tried again from angles beside it.
+        start, middle = best_x.copy(), best_x[3]
+        for turn in NEAREST_TURNS_RAD:
+            start[:] = best_x
+            start[3] = middle + turn
+            feasible, x = nearest_displacement(task, best_branch, start, spread, best, rows)
+            length = math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2)
+            if feasible and length < best:
+                best = length
+                best_x[:] = x
     return any_found, best_branch, best_x

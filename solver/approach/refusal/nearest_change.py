@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.approach.arcs.arcs import sample_angles, task_arcs
-from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.cut_in.cut_in import broken_between
 from solver.approach.refusal.displacement_search import nearest_of_all
 from solver.approach.refusal.tolerances import (
     NEAREST_ANGLES,
@@ -82,7 +82,7 @@ def _nearest_with(task: ApproachTask, spread: float) -> Nearest | None:
 
 def _holds_between_rows(task: ApproachTask, angle: float, tool_side: int, branch: int) -> bool:
     thinning = task.thinning_joints(angle, tool_side, branch)
-    return broken_limit(task, Candidate(angle, tool_side, branch, thinning, 0.0, 0, "")) is None
+    return broken_between(task, Candidate(angle, tool_side, branch, thinning, 0.0, 0, "")) is None
 
 
 def displaced(task: ApproachTask, displacement: tuple[float, float, float]) -> ApproachTask:

@@ -7,8 +7,9 @@ NEAREST_INSIDE_RAD: Final = 1e-4
 displacement the feasible arc is often a point; this opens it to the width that no search misses,
 for about 0.01 mm of displacement."""
 
-NEAREST_INSIDE_M: Final = 1e-5
-"""How far inside the reach the nearest displacement is put [m], for the same reason."""
+NEAREST_INSIDE_M: Final = 3e-5
+"""How far inside the reach the nearest displacement is put [m], for the same reason, and because at
+its very edge the elbow turns faster than it may."""
 
 NEAREST_INSIDE_ARC_RAD: Final = 1e-6
 """How far inside its arc the nearest angle is put [rad], so that digits lost on the way to another
@@ -56,9 +57,15 @@ NEAREST_FLATTEST: Final = 0.1
 NEAREST_RESTORATIONS: Final = 12
 """Steps at most straight back to the constraints at the end; near them each squares the error."""
 
-NEAREST_JUMP_SHARE: Final = 0.01
-"""Share of the travel that counts as a wrist jump which the nearest displacement leaves unused: the
-feasible arc is then some hundredths of a radian wide, for a few hundredths of a millimetre."""
+NEAREST_RATE_ROOM: Final = 1e-3
+"""How much room below the highest joint rate the nearest displacement leaves [a sine, see
+`rate_room`], so that the feasible arc is no point, for a few hundredths of a millimetre."""
+
+NEAREST_TURNS_RAD: Final = (-0.6, -0.3, -0.15, 0.15, 0.3, 0.6)
+"""Angles from the best one found at which it is searched once more [rad]."""
+
+NEAREST_DIFFERENCE: Final = 1e-6
+"""Step of the differences that the slope of that room is taken from [m and rad]."""
 
 NEAREST_SPARES_M: Final = (0.0, 1e-4, 3e-4, 1e-3)
 """Freedom to move that a displaced target is given beyond what it needs, in turn until its arcs
@@ -103,3 +110,7 @@ NEAREST_FLAT_REACH: Final = 1e-12
 NEAREST_WIDENING: Final = 1.1
 """Factor on what is missing, by which the displacement that has to be borne is widened: limits
 bend, and one that just misses would miss again."""
+
+HALF_TURN_DEG: Final = 180.0
+"""A joint that turns further than this in a millimetre of cut-in is said to make half a turn [deg]:
+it swings round a singular posture, as fast as one likes."""

@@ -27,7 +27,7 @@ BESIDE: Final = int(Constraint.BESIDE)
 """The reach beside the waist's axis, where the shoulder stands off it."""
 
 JUMP: Final = int(Constraint.JUMP)
-"""A joint that turns too far from row to row."""
+"""A joint that turns faster along the cut-in than it may."""
 
 WHOLE_TURN: Final = int(Constraint.NONE)
 """Nothing: the arc is the whole turn."""

@@ -12,9 +12,10 @@ import numpy as np
 
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import WristGeometry, one_branch, wrap
+from solver.kinematics.straight_rates import between_rate_room, posture_rate_room, posture_rates
 from solver.problem.effort import joint_cost
 from solver.robots.model import Array
-from solver.tolerances import JOINT_RATE_RAD_M, NEAR_FEASIBLE_RAD
+from solver.tolerances import NEAR_FEASIBLE_RAD
 
 
 class CutInTask(NamedTuple):
@@ -105,8 +106,8 @@ def trace(task, angle, branch, retreats, rows):
     Retreats descend to 0, the thinning posture. A joint of more than one turn is on the turn
     nearest to the reference on which the whole cut-in is inside its limits.
 
-    Returns the margin: the smallest of the joints' [rad], the reach's [m] and, as a share, what is
-    left below the joint rate that counts as a wrist jump.
+    Returns the margin: the smallest of the joints' [rad], the reach's [m], and what joints are
+    short of the highest rate, in the rows and between them (`rate_room`, `swing_room`).
     """
     axes = np.empty((3, 3))
     tool_axes(task, angle, axes)
@@ -115,17 +116,36 @@ def trace(task, angle, branch, retreats, rows):
     for n in range(last - 1, -1, -1):
         q = rows[n]
         margin = min(margin, posture(task, axes, retreats[n], branch, q))
-        step = 0.0
         for i in range(6):
-            change = wrap(q[i] - rows[n + 1, i])
-            q[i] = rows[n + 1, i] + change
-            step = max(step, abs(change))
-        allowed = JOINT_RATE_RAD_M * (retreats[n] - retreats[n + 1])
-        margin = min(margin, 1.0 - step / allowed)
+            q[i] = rows[n + 1, i] + wrap(q[i] - rows[n + 1, i])
+        spacing = retreats[n] - retreats[n + 1]
+        margin = min(margin, between_rate_room(task.geometry, q, rows[n + 1], spacing))
+    for n in range(last + 1):
+        margin = min(margin, posture_rate_room(task.geometry, rows[n]))
     choose_turns(task.lower, task.upper, task.reference, rows)
     for n in range(last + 1):
         margin = min(margin, limit_margin(task, rows[n])[0])
     return margin
+
+
+@kernel
+def fastest_joint(geometry, retreats, rows):
+    """The largest rate of a joint along a cut-in, in its rows or from row to row, and where.
+
+    Returns:
+        The rate [rad/m], the joint, and the row: the one behind where it is from row to row.
+    """
+    rates, fastest, joint, row = np.empty(6), -1.0, 0, 0
+    for n in range(len(rows)):
+        posture_rates(geometry, rows[n], rates)
+        for i in range(6):
+            rate = rates[i]
+            if n + 1 < len(rows):
+                travel = abs(rows[n, i] - rows[n + 1, i])
+                rate = max(rate, travel / (retreats[n] - retreats[n + 1]))
+            if rate > fastest:
+                fastest, joint, row = rate, i, n
+    return fastest, joint, row
 
 
 @kernel
@@ -156,6 +176,16 @@ def retreat_from(geometry, pose, branch, retreats, rows):
         one_branch(geometry, position, axes, branch, rows[n])
         for i in range(6):
             rows[n, i] = rows[n + 1, i] + wrap(rows[n, i] - rows[n + 1, i])
+
+
+@kernel
+def retreat_reach(geometry, pose, branch, retreats, margins):
+    """Writes how far the wrist centre is inside the reach behind a pose to margins, (n,) [m]."""
+    axes, position, q = pose[:3, :3], np.empty(3), np.empty(6)
+    for n in range(len(retreats)):
+        for i in range(3):
+            position[i] = pose[i, 3] - retreats[n] * axes[i, 2]
+        margins[n] = one_branch(geometry, position, axes, branch, q)
 
 
 @kernel

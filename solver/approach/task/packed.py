@@ -82,8 +82,8 @@ class PackedTask(NamedTuple):
     Attributes:
         numbers: shape (NUMBERS,).
         retreats: distances behind the target, from the standoff down to 0, shape (rows,) [m].
-        cos_steps: cosine of the turn that counts as a wrist jump, between row and row, shape
-            (rows - 1,); below -1 where half a turn does not.
+        cos_steps: cosine of the farthest that a joint may turn from row to row, shape (rows - 1,);
+            below -1 where that is half a turn or more.
     """
 
     numbers: Array
@@ -138,7 +138,7 @@ def pack(
 
 
 def jump_cosines(retreats: Sequence[float] | Array) -> Array:
-    """Cosine of the joint travel that counts as a wrist jump, between rows, shape (rows - 1,)."""
+    """Cosine of the farthest that a joint may turn from row to row, shape (rows - 1,)."""
     travel = JOINT_RATE_RAD_M * np.abs(np.diff(np.asarray(retreats)))
     return np.asarray(np.where(travel < math.pi, np.cos(travel), NEVER_LIMITS))
 

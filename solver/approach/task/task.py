@@ -12,7 +12,7 @@ from solver.approach.task.packed import PackedTask, jump_cosines, pack
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem.options import Options
 from solver.problem.problem import Problem
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import looked_at_retreats
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
@@ -135,5 +135,5 @@ def approach_task(problem: Problem, target: Target, reference: Sequence[float]) 
         target=target,
         reference=tuple(float(value) for value in reference),
         joint_weights=problem.joint_weights,
-        retreats_m=tuple(even_retreats(problem.options).tolist()),
+        retreats_m=tuple(looked_at_retreats(problem.options).tolist()),
     )

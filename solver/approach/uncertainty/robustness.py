@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.approach.task.feasibility import retreat_from_many
 from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import displacement_margin, rows_displacement_margins
@@ -21,7 +22,7 @@ from solver.kinematics.families import rail_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem.options import Options
-from solver.problem.retreats import even_retreats
+from solver.problem.retreats import looked_at_retreats
 from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
@@ -67,9 +68,9 @@ def bears_uncertainty(task: ApproachTask, angle: float, tool_side: int, branch: 
 
 
 def path_displacement_margin(
-    robot: Robot, tool: Tool, options: Options, branch: int, path_joints: Array
+    robot: Robot, tool: Tool, options: Options, branch: int, thinning: Sequence[float] | Array
 ) -> float:
-    """How far a target may move until a row of its cut-in meets a limit [m].
+    """How far a target may move until its cut-in meets a limit somewhere [m].
 
     The tool moves with the target, its orientation and branch kept; the limits are the robot's less
     `limit_margin_rad`, the reach, and the straight wrist, which no branch passes without a jump.
@@ -79,35 +80,31 @@ def path_displacement_margin(
         tool: its tool.
         options: of the problem.
         branch: inverse kinematics branch.
-        path_joints: the cut-in, evenly spaced, standby first, shape (rows, 6) [rad].
+        thinning: the posture at the target, shape (joints,) [rad or m].
     """
-    rows = np.asarray(path_joints, dtype=np.float64)
+    posture = np.asarray(thinning, dtype=np.float64)
     if (rail := rail_of(robot, tool)) is not None:
-        robot, rows = rail.arm_at(float(rows[-1, 0])), rows[:, 1:]
-    return float(displacement_margins(robot, tool, options, np.array([branch]), rows[None])[0])
+        robot, posture = rail.arm_at(float(posture[0])), posture[1:]
+    return float(displacement_margins(robot, tool, options, np.array([branch]), posture[None])[0])
 
 
 def displacement_margins(
-    robot: Robot, tool: Tool, options: Options, branches: NDArray[np.int64], paths: Array
+    robot: Robot, tool: Tool, options: Options, branches: NDArray[np.int64], thinning: Array
 ) -> Array:
-    """`path_displacement_margin` of n cut-ins of an arm that is not on a rail, shape (n,) [m].
+    """`path_displacement_margin` of n approaches of an arm that is not on a rail, shape (n,) [m].
 
     Args:
         robot: an arm with a spherical wrist.
         tool: its tool.
         options: of the problem.
         branches: inverse kinematics branches, shape (n,).
-        paths: evenly spaced, standby first, shape (n, rows, 6) [rad].
+        thinning: postures at the targets, shape (n, 6) [rad].
     """
-    paths = np.ascontiguousarray(paths, dtype=np.float64)
-    margins = np.empty(len(paths))
-    rows_displacement_margins(
-        wrist_geometry(robot, tool),
-        *robot.limits_within(options.limit_margin_rad),
-        np.ascontiguousarray(inverse(robot.mount) @ many_poses(robot, tool, paths[:, -1])),
-        even_retreats(options, paths.shape[1]),
-        branches,
-        paths,
-        margins,
-    )
+    geometry, retreats = wrist_geometry(robot, tool), looked_at_retreats(options)
+    poses = np.ascontiguousarray(inverse(robot.mount) @ many_poses(robot, tool, thinning))
+    paths, margins = np.empty((len(thinning), len(retreats), 6)), np.empty(len(thinning))
+    paths[:, -1] = thinning
+    retreat_from_many(geometry, poses, branches, retreats, paths)
+    limits = robot.limits_within(options.limit_margin_rad)
+    rows_displacement_margins(geometry, *limits, poses, retreats, branches, paths, margins)
     return margins

@@ -27,6 +27,8 @@ class Start:
         retreats_m: how far each of them is behind thinning, shape (2 + rows,) [m].
         strike_m: how far the tool centre point is beyond the target.
         swing_rad: rotation vector of the swing, normal to the branch, shape (3,).
+        limits: lower and upper limits of each posture, shape (2, 2 + rows, joints); None where they
+            are the task's.
     """
 
     tool_side: int
@@ -37,6 +39,13 @@ class Start:
     retreats_m: Array
     strike_m: float
     swing_rad: Array
+    limits: Array | None = None
+
+    def limits_of(self, task: ApproachTask) -> Array:
+        """Lower and upper limits of each posture, shape (2, 2 + rows, joints) [rad or m]."""
+        if self.limits is not None:
+            return self.limits
+        return np.repeat(np.stack(task.limits)[:, None], len(self.postures), axis=1)
 
 
 @dataclass(frozen=True)
@@ -98,9 +107,7 @@ class ProgrammeResult:
 def shape_of(task: ApproachTask, *, coupled: bool = False, rows: int = 0) -> Shape:
     """The shape of a task's programme."""
     options = task.options
-    return Shape(
-        options.norm, options.strike_zone_m > 0, options.tilt_tolerance_rad > 0, rows, coupled
-    )
+    return Shape(options.norm, options.strikes, options.tilts, rows, coupled)
 
 
 def make_instance(
@@ -118,10 +125,10 @@ def make_instance(
     reference = np.asarray(task.reference)
     following = np.zeros(n) if next_thinning is None else np.asarray(next_thinning, dtype=float)
     inset = NLP_LIMIT_INSET if shape.strike or shape.tilt else 0.0
-    low, high = task.lower + inset, task.upper - inset
+    low, high = start.limits_of(task)
     x0: list[ArrayLike] = [start.postures.ravel(), [start.approach_angle_rad]]
-    lower: list[ArrayLike] = [np.tile(low, programme.postures), [start.lower_rad]]
-    upper: list[ArrayLike] = [np.tile(high, programme.postures), [start.upper_rad]]
+    lower: list[ArrayLike] = [(low + inset).ravel(), [start.lower_rad]]
+    upper: list[ArrayLike] = [(high - inset).ravel(), [start.upper_rad]]
     if shape.strike:
         x0.append([start.strike_m / options.strike_zone_m])
         lower.append([0.0])

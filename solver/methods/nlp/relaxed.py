@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.approach.cut_in.cut_in import retreat_rows
+from solver.approach.cut_in.cut_in import rate_room, retreat_rows
 from solver.approach.task.relaxation import Placement, rotation
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics
@@ -13,9 +13,10 @@ from solver.kinematics.spherical_wrist import inverse_kinematics
 from solver.methods.nlp.backends import solve_instance
 from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
+from solver.methods.nlp.slower import slower_limits
 from solver.methods.nlp.tolerances import RELAXED_ROUNDS
 from solver.robots.model import Array
-from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_BRANCH_RAD
+from solver.tolerances import LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_BRANCH_RAD
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,8 @@ def solve_relaxed(
     """Solves a relaxed task from one start.
 
     The programme keeps limits at thinning and standby. A row of the cut-in that does not hold
-    becomes a further posture of the programme, which goes on from where it was.
+    becomes a further posture of the programme, which goes on from where it was; one whose joints
+    turn too fast gets closer limits.
     """
     spent = 0
     for _ in range(RELAXED_ROUNDS):
@@ -62,22 +64,44 @@ def solve_relaxed(
         retreats = np.asarray(task.retreats_m)
         rows = retreat_rows(task.robot, task.tool, tuple(thinning), branch, retreats)
         broken = _broken_row(task, rows, retreats)
+        fast = None
         if broken is None:
-            if _jumps(rows, retreats):
-                return RelaxedAnswer("wrist_jump", spent, start.tool_side)
-            return RelaxedAnswer("solved", spent, start.tool_side, branch, thinning)
-        if retreats[broken] in start.retreats_m:
+            room = rate_room(task.robot, task.tool, branch, rows)
+            if room.min() >= 0.0:
+                return RelaxedAnswer("solved", spent, start.tool_side, branch, thinning)
+            broken = fast = int(room.argmin())
+        elif retreats[broken] in start.retreats_m:
             return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
         postures = result.x[: programme.angle].reshape(programme.postures, programme.joints)
         start = replace(
             start,
             approach_angle_rad=seen.approach_angle_rad,
-            postures=np.vstack((postures, rows[broken])),
-            retreats_m=np.append(start.retreats_m, retreats[broken]),
+            postures=postures,
             strike_m=seen.strike_m,
             swing_rad=seen.swing_rad,
         )
+        if retreats[broken] not in start.retreats_m:
+            start = with_row(task, start, rows[broken], float(retreats[broken]))
+        if fast is not None:
+            k = int(np.flatnonzero(start.retreats_m == retreats[fast])[0])
+            limits = start.limits_of(task).copy()
+            drawn = slower_limits(task, rows[fast], limits[:, k])
+            if drawn is None:
+                return RelaxedAnswer("wrist_jump", spent, start.tool_side)
+            limits[:, k] = drawn
+            start = replace(start, limits=limits)
     return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
+
+
+def with_row(task: ApproachTask, start: Start, row: Array, retreat: float) -> Start:
+    """The start with a further posture, shape (joints,), at a retreat [m]."""
+    limits = np.concatenate((start.limits_of(task), np.stack(task.limits)[:, None]), axis=1)
+    return replace(
+        start,
+        postures=np.vstack((start.postures, row)),
+        retreats_m=np.append(start.retreats_m, retreat),
+        limits=limits,
+    )
 
 
 def pose_of(task: ApproachTask, tool_side: int, seen: Placement) -> Array:
@@ -112,8 +136,3 @@ def _broken_row(task: ApproachTask, rows: Array, retreats: Array) -> int | None:
     worst = np.maximum(beyond, outside)
     k = int(worst.argmax())
     return k if worst[k] > LIMIT_EXCESS_RAD / 2 else None
-
-
-def _jumps(rows: Array, retreats: Array) -> bool:
-    rates = np.abs(np.diff(rows, axis=0)).max(axis=1) / -np.diff(retreats)
-    return bool(rates.max() > JOINT_RATE_RAD_M)

@@ -37,9 +37,9 @@ class Corner:
 def corner_tasks(task: ApproachTask) -> tuple[ApproachTask, ...]:
     """The task without relaxations, and with each of them at its ends: unrelaxed tasks all."""
     options = task.options
-    strikes = (0.0, options.strike_zone_m) if options.strike_zone_m > 0 else (0.0,)
+    strikes = (0.0, options.strike_zone_m) if options.strikes else (0.0,)
     swings = [np.zeros(3)]
-    if options.tilt_tolerance_rad > 0:
+    if options.tilts:
         turns = np.arange(RELAXED_SWINGS) * (2 * math.pi / RELAXED_SWINGS)
         swings += [
             options.tilt_tolerance_rad

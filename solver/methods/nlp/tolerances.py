@@ -66,8 +66,9 @@ RELAXED_SWINGS: Final = 6
 RELAXED_SAMPLES: Final = 72
 """Approach angles, five degrees apart, among which those starts are looked for."""
 
-RELAXED_ROUNDS: Final = 4
-"""How often a row of the cut-in that does not hold is added to a relaxed programme."""
+RELAXED_ROUNDS: Final = 6
+"""How often a row of the cut-in that does not hold is added to a relaxed programme, or its limits
+are drawn in because a joint is too fast there."""
 
 QP_TOLERANCE: Final = 1e-10
 """Tolerance of the quadratic programmes [as scaled, near one], below that of the programme they are
@@ -87,3 +88,7 @@ here."""
 
 OSQP_ITERATIONS: Final = 20_000
 """Iteration limit of OSQP; the other two take a few dozen of their own."""
+
+RATE_BOUND_SPARE: Final = 0.03
+"""Share beyond what is needed by which a bound keeps elbow or wrist from a singular posture: what
+is needed changes a little with the posture, by less than this from one solution to the next."""

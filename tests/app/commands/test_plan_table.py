@@ -93,7 +93,7 @@ def test_a_refusal_by_angle_names_the_nearest() -> None:
     request["targets"] = request["targets"][:1]
     request["options"] = {"method": "floating_z", "samples": 3}
     assert "1: out_of_reach" in printed(request)
-    assert "the nearest feasible angle is -38.50°" in printed(request)
+    assert "the nearest feasible angle is -38.46°" in printed(request)
 
 
 def test_a_slide_is_told_in_millimetres() -> None:

@@ -71,7 +71,6 @@ def test_together_is_as_one_by_one(name: str, symmetric: bool, norm: str) -> Non
         {"include": ("path", "transfer")},
         {"include": ("path", "arcs")},
         {"certify": True},
-        {"path_points": 10},
     ],
 )
 def test_what_needs_more_goes_one_by_one(tabletop: Robot, changes: dict[str, object]) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from bench.order_references import greedy_effort
 from solver import Options, Plan, Problem, Robot, Target, solve, verify_plan
-from solver.approach.cut_in.cut_in import broken_limit
+from solver.approach.cut_in.cut_in import broken_between
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.methods.semi_analytic import solve_ssas
@@ -92,7 +92,7 @@ def test_limits_hold_between_rows_too(tabletop: Robot) -> None:
     for target in problem.targets:
         task = approach_task(problem, target, problem.start)
         candidate = solve_ssas(task)
-        if not isinstance(candidate, Candidate) or broken_limit(task, candidate) is None:
+        if not isinstance(candidate, Candidate) or broken_between(task, candidate) is None:
             continue
         broken += 1
         single = replace(problem, targets=(target,))

@@ -134,7 +134,7 @@ def test_limits_count_with_the_margin_asked_for(plan: Plan) -> None:
         strict = replace(plan.problem, options=options)
         # A target's freedom to move ends at the limits less the margin, so it is claimed anew.
         freedom = path_displacement_margin(
-            strict.robot, strict.mounted_tool, options, approach.branch, approach.path_joints
+            strict.robot, strict.mounted_tool, options, approach.branch, approach.path_joints[-1]
         )
         assert approach.displacement_margin_m is not None
         assert 0.0 <= freedom < approach.displacement_margin_m

@@ -6,6 +6,7 @@ from solver.approach.optimum.batch import closed_form_optima
 from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
+from solver.problem.retreats import even_retreats
 from tests.solver.problems import random_targets
 
 
@@ -35,7 +36,7 @@ def test_a_batch_has_the_optima_of_its_targets(tabletop: Robot, norm: str) -> No
             float(optima.angles_rad[k]),
             int(optima.tool_sides[k]),
             int(optima.branches[k]),
-            np.asarray(task.retreats_m),
+            even_retreats(task.options),
         )
         assert optima.paths[k] == pytest.approx(rows, abs=1e-9)
     assert found >= 20
