@@ -229,3 +229,14 @@ def test_same_task_same_answer(tabletop: Robot) -> None:
             for _ in range(2)
         )
         assert first == second
+
+
+@pytest.mark.parametrize("value", [5e-324, 1e-300, 1e-160, 1e-12])
+@pytest.mark.parametrize("name", ["strike_zone_m", "tilt_tolerance_rad"])
+def test_a_relaxation_that_underflows_is_none(tabletop: Robot, name: str, value: float) -> None:
+    options = {"method": "ncos", "order": "independent"}
+    plain = solve(data_set_3(tabletop, **options))
+    tiny = solve(data_set_3(tabletop, **options, **{name: value}))
+    assert tiny.planned == plain.planned == 5
+    for one, two in zip(plain.approaches, tiny.approaches, strict=True):
+        assert one.effort == two.effort
