@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from solver.kinematics.families import rail_of, split_rail
+from solver.kinematics.families import rail_of
 from solver.kinematics.forward import jacobian, many_poses
 from solver.kinematics.numerical import postures_behind, rates_behind
 from solver.problem.problem import Problem
@@ -54,11 +54,9 @@ def _at_ends(problem: Problem, paths: Array) -> Array:
     """
     robot, tool, ends = problem.robot, problem.mounted_tool, paths[:, [0, -1]]
     if len(robot.joints) != SQUARE:
-        turning = robot.turning
-        rail = split_rail(robot)
-        if rail is not None:
-            robot, ends, turning = rail.arm, ends[..., 1:], turning[1:]
-        return np.array([(rates_behind(robot, tool, two) * turning).max() for two in ends])
+        if (rail := rail_of(robot, tool)) is not None:
+            robot, ends = rail.arm, ends[..., 1:]
+        return np.array([(rates_behind(robot, tool, two) * robot.turning).max() for two in ends])
     columns = jacobian(robot, tool, ends)
     along = np.zeros((*ends.shape[:2], SQUARE, 1))
     along[..., :3, 0] = many_poses(robot, tool, ends)[..., :3, 2]

@@ -217,7 +217,7 @@ def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
     robot, tool, branch = task.robot, task.tool, candidate.branch
 
     def reach(retreats: Array) -> Array:
-        return reach_behind(robot, tool, candidate.thinning_joints, branch, retreats)
+        return _reach(task, candidate, retreats)
 
     def inside(retreats: Array) -> Array:
         return np.asarray(task.inside(_postures(task, candidate, retreats)).min(axis=1))
@@ -255,26 +255,19 @@ def _lowest(coarse: Array, measure: Callable[[Array], Array]) -> tuple[float, fl
     return float(retreats[k]), float(values[k])
 
 
-def reach_behind(
-    robot: Robot,
-    tool: Tool,
-    thinning: Sequence[float] | Array,
-    branch: int | None,
-    retreats: Array,
-) -> Array:
-    """How far the wrist centre is inside the reach behind a thinning posture, shape (n,) [m].
+def _reach(task: ApproachTask, candidate: Candidate, retreats: Array) -> Array:
+    """How far the wrist centre is inside the reach at each retreat, shape (n,) [m].
 
-    Arguments are those of `retreat_rows`. Infinite for an arm without a closed form, whose postures
-    miss the line where they do not reach it.
+    Infinite for an arm without a closed form, whose postures miss the line where they do not reach.
     """
-    margins = np.full(len(retreats), np.inf)
-    if branch is None:
+    robot, tool = task.robot, task.tool
+    margins, posture = np.full(len(retreats), np.inf), np.asarray(candidate.thinning_joints)
+    if candidate.branch is None:
         return margins
-    posture = np.asarray(thinning, dtype=np.float64)
     if (rail := rail_of(robot, tool)) is not None:
         robot, posture = rail.arm_at(float(posture[0])), posture[1:]
     pose = inverse(robot.mount) @ forward_kinematics(robot, tool, posture)
-    retreat_reach(wrist_geometry(robot, tool), pose, branch, retreats, margins)
+    retreat_reach(wrist_geometry(robot, tool), pose, candidate.branch, retreats, margins)
     return margins
 
 
