@@ -47,6 +47,7 @@ _ALL = (
     Subject("sweep_share", "Against a sweep of 65,536 angles", ALL_CORES),
     Subject("ncos", "`ncos` without relaxations"),
     Subject("relaxed", "`ncos` with a strike zone and a tilt"),
+    Subject("more_room", "More room against less"),
     Subject("cold_starts", "What the warm start is worth"),
     Subject("given", "Order `given`, against ladder graphs"),
     Subject("optimal", "Order `optimal`, against longer searches"),

@@ -11,11 +11,11 @@ import numpy as np
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics
-from solver.methods.ncos import from_thinning
+from solver.methods.candidates import from_thinning
 from solver.methods.nlp.backends import solve_instance
 from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
-from solver.methods.nlp.relaxed import pose_of, solve_relaxed
+from solver.methods.nlp.whole_cut_in import pose_of, solve_whole_cut_in
 from solver.problem.effort import posture_effort
 from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason
@@ -76,7 +76,7 @@ def solve_cold(task: ApproachTask, starts: int, seed: int) -> Candidate | Reason
     """`ncos` without its warm start: the cheapest of what seeded random starts lead to.
 
     Starts are drawn as in `cold_solve`. Each goes on until the whole cut-in holds, and its answer
-    is put on the closed form, as with the relaxations.
+    is put on the closed form.
 
     Args:
         task: the target's task, of an arm with a closed form.
@@ -87,7 +87,7 @@ def solve_cold(task: ApproachTask, starts: int, seed: int) -> Candidate | Reason
     iterations, endings = 0, Counter[str]()
     best: Candidate | None = None
     for _ in range(starts):
-        answer = solve_relaxed(task, _random_start(task, rng), None)
+        answer = solve_whole_cut_in(task, _random_start(task, rng))
         iterations += answer.iterations
         endings[answer.status] += 1
         if answer.thinning is None:

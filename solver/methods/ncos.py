@@ -4,65 +4,59 @@ Source: S 3.3 for the idea; the programme is in `solver.methods.nlp.formulation`
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from solver.approach.cut_in.cut_in import retreat_rows
 from solver.approach.optimum.on_arcs import ArcOptimum, best_on_arcs
 from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
-from solver.approach.task.frame import signed_angle
-from solver.approach.task.relaxation import placement
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.families import has_closed_form, rail_of
-from solver.kinematics.forward import forward_kinematics
+from solver.methods.candidates import at_angle
+from solver.methods.coupling import Coupling
 from solver.methods.nlp.backends import solve_instance
 from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
-from solver.methods.nlp.relaxed import solve_relaxed
-from solver.methods.nlp.starts import corners, nearest_starts, start_at
 from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
-from solver.methods.tolerances import RELAXED_NEAREST, RELAXED_STARTS
-from solver.problem.effort import posture_effort
+from solver.methods.relaxed.approach import solve_relaxed
 from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason
-from solver.robots.model import Array
 
 SOLVED = "solved"
 AS_GOOD = "solved_warm_start_as_good"
 
 
-def solve_ncos(
-    task: ApproachTask, next_thinning: Sequence[float] | None = None
-) -> Candidate | Reason:
+def solve_ncos(task: ApproachTask) -> Candidate | Reason:
     """The programme's approach, or its warm start where the programme fails or is not better.
 
     The optimum is polished: a programme ends within its tolerance of limits and constraints, so its
     answer is put back on the closed form, which meets them exactly. The answer is therefore never
     dearer than the warm start, and `status` says which of the two it is.
-
-    Args:
-        task: the target's task.
-        next_thinning: the next target's thinning posture; where given, the travel to it from this
-            standby counts too. `Candidate.effort` stays that of this thinning posture.
     """
     if (rail := rail_of(task.robot, task.tool)) is not None:
         return solve_on_rail(task, rail)
     if not has_closed_form(task.robot, task.tool):
         return solve_other_arm(task)
     if task.options.relaxed:
-        return _solve_with_relaxations(task, _Coupling(task, next_thinning))
+        return solve_relaxed(task)
     warm_start = best_on_arcs(task)
-    return diagnose(task) if warm_start is None else improved(task, warm_start, next_thinning)
+    return diagnose(task) if warm_start is None else improved(task, warm_start)
 
 
 def improved(
     task: ApproachTask, warm_start: ArcOptimum, next_thinning: Sequence[float] | None = None
 ) -> Candidate:
-    """The unrelaxed programme's approach from a warm start, or that start if it is not better."""
-    coupling = _Coupling(task, next_thinning)
+    """The unrelaxed programme's approach from a warm start, or that start if it is not better.
+
+    Args:
+        task: the target's task.
+        warm_start: where the programme starts, and on which arc it stays.
+        next_thinning: the next target's thinning posture; where given, the travel to it from this
+            standby counts too. `Candidate.effort` stays that of this thinning posture.
+    """
+    coupling = Coupling(task, next_thinning)
     result = solve_on_arc(task, warm_start, next_thinning)
     kept = _at_angle(task, warm_start, warm_start.angle_rad)
     if not result.success:
@@ -97,79 +91,10 @@ def solve_on_arc(
     return solve_instance(task.robot, instance, task.options)
 
 
-def _solve_with_relaxations(task: ApproachTask, coupling: "_Coupling") -> Candidate | Reason:
-    """The cheapest of the feasible corners and of what the programme makes of a few starts."""
-    offers = [
-        from_thinning(task, corner.tool_side, corner.branch, corner.thinning)
-        for corner in corners(task)
-    ]
-    offers.sort(key=coupling.cost)
-    starts = [
-        start_at(task, offer.tool_side, offer.branch or 0, np.asarray(offer.thinning_joints))
-        for offer in offers[:RELAXED_STARTS]
-    ] or nearest_starts(task, RELAXED_NEAREST)
-    iterations, statuses = 0, []
-    kept = offers[0] if offers else None
-    best = None
-    for start in starts:
-        answer = solve_relaxed(task, start, coupling.next_thinning)
-        iterations += answer.iterations
-        statuses.append(answer.status)
-        if answer.thinning is None:
-            continue
-        offer = from_thinning(task, answer.tool_side, answer.branch, answer.thinning)
-        if best is None or coupling.cost(offer) < coupling.cost(best):
-            best = offer
-    if best is not None and (kept is None or coupling.cost(best) <= coupling.cost(kept)):
-        return _told(best, iterations, SOLVED)
-    if kept is not None:
-        status = AS_GOOD if best is not None else f"warm_start_after_{statuses[0]}"
-        return _told(kept, iterations, status)
-    reason = diagnose(task)
-    more = f"{reason.detail}; neither did the relaxed programme find one from {len(starts)} starts"
-    return replace(reason, detail=more)
-
-
-@dataclass(frozen=True)
-class _Coupling:
-    """What an approach costs, with the travel to a next target where there is one."""
-
-    task: ApproachTask
-    next_thinning: Sequence[float] | None
-
-    def cost(self, candidate: Candidate) -> float:
-        """The effort of thinning, and from standby to the next thinning posture."""
-        if self.next_thinning is None:
-            return candidate.effort
-        task = self.task
-        ends = even_retreats(task.options, 2)
-        standby = retreat_rows(
-            task.robot, task.tool, candidate.thinning_joints, candidate.branch, ends
-        )[0]
-        return candidate.effort + posture_effort(
-            self.next_thinning, standby, task.joint_weights, task.options.norm
-        )
-
-
 def _at_angle(task: ApproachTask, warm_start: ArcOptimum, angle: float) -> Candidate:
     arc = warm_start.arc
     thinning = task.thinning_joints(angle, arc.tool_side, arc.branch)
-    return _candidate(task, angle, arc.tool_side, arc.branch, thinning)
-
-
-def from_thinning(task: ApproachTask, tool_side: int, branch: int, thinning: Array) -> Candidate:
-    """The candidate of a thinning posture on its branch, shape (joints,) [rad]; nothing spent."""
-    pose = forward_kinematics(task.robot, task.tool, thinning)
-    seen = placement(task.frame, np.asarray(task.target.position_m), tool_side, pose)
-    joints = tuple(float(value) for value in thinning)
-    return _candidate(task, seen.approach_angle_rad, tool_side, branch, joints)
-
-
-def _candidate(
-    task: ApproachTask, angle: float, tool_side: int, branch: int, thinning: Sequence[float]
-) -> Candidate:
-    cost = posture_effort(thinning, task.reference, task.joint_weights, task.options.norm)
-    return Candidate(signed_angle(angle), tool_side, branch, thinning, cost, 0, "")
+    return at_angle(task, angle, arc.tool_side, arc.branch, thinning)
 
 
 def _told(candidate: Candidate, iterations: int, status: str) -> Candidate:

@@ -5,9 +5,3 @@ from typing import Final
 RAIL_POSITIONS: Final = 25
 """Positions of a slide tried with the closed form: 5 cm apart on 1.2 m. Not an optimum in the
 slide; `ncos` starts from the best of them."""
-
-RELAXED_STARTS: Final = 3
-"""Starts of a relaxed programme from the cheapest feasible corners of the relaxations."""
-
-RELAXED_NEAREST: Final = 6
-"""Starts where no corner is feasible, from the angles that come closest."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from solver.problem.tolerances import LEAST_STRIKE_ZONE_M, LEAST_TILT_RAD
+from solver.problem.tolerances import LEAST_DWELL_S, LEAST_STRIKE_ZONE_M, LEAST_TILT_RAD
 
 METHOD_NAMES: Final = ("fixed_z", "floating_z", "as", "ssas", "ncos")
 BACKEND_NAMES: Final = ("sqp", "ipopt")
@@ -61,6 +61,11 @@ class Options:
     def squared(self) -> bool:
         """Whether joint travel counts squared: the norm is l2."""
         return self.norm == "l2"
+
+    @property
+    def dwells(self) -> bool:
+        """Whether the dwell is long enough to be one."""
+        return self.dwell_s > LEAST_DWELL_S
 
     @property
     def strikes(self) -> bool:

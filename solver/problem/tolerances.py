@@ -22,3 +22,6 @@ where shares of it underflow."""
 
 LEAST_TILT_RAD: Final = 1e-9
 """A tilt tolerance up to this is none [rad], for the same reason."""
+
+LEAST_DWELL_S: Final = 1e-9
+"""A dwell up to this is none [s]: added to the seconds before it, a shorter one is lost."""

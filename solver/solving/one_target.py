@@ -12,7 +12,7 @@ from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.any_arm import Solve
 from solver.methods.registry import METHODS
 from solver.problem.problem import Problem
-from solver.problem.solution import INFEASIBLE, Approach, Reason, SolverReport
+from solver.problem.solution import INFEASIBLE, PLANNED, Approach, Reason, SolverReport
 from solver.problem.targets import Target
 from solver.sequencing.programmed import programmed
 from solver.sequencing.sequence import Stop
@@ -55,12 +55,32 @@ def plan_target(
         report = SolverReport(method, elapsed, 0, outcome.code)
         return Approach(target.id, INFEASIBLE, report, reason=outcome, arcs=arcs)
     report = SolverReport(method, elapsed, outcome.iterations, outcome.status)
-    cut_in = build_cut_in(task, outcome)
-    approach = propose(problem, target, outcome, cut_in, reference, report)
+    judged = (
+        _judged(problem, task, candidate, reference, report)
+        for candidate in (outcome, *outcome.others)
+    )
+    first = next(judged)
+    approach = first if first.status == PLANNED else next(filter(_is_planned, judged), first)
+    return replace(approach, arcs=arcs)
+
+
+def _judged(
+    problem: Problem,
+    task: ApproachTask,
+    candidate: Candidate,
+    reference: Sequence[float],
+    report: SolverReport,
+) -> Approach:
+    cut_in = build_cut_in(task, candidate)
+    approach = propose(problem, task.target, candidate, cut_in, reference, report)
     if problem.options.certify:
         bound = certify_task(task, approach.effort).lower_bound
         approach = replace(approach, lower_bound=bound)
-    return replace(judge(problem, approach, reference), arcs=arcs)
+    return judge(problem, approach, reference)
+
+
+def _is_planned(approach: Approach) -> bool:
+    return approach.status == PLANNED
 
 
 def solve_between_rows_too(

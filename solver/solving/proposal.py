@@ -74,7 +74,7 @@ def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) 
 def _trajectory(problem: Problem, reference: Array, motion: TimedRows) -> Trajectory:
     standby, thinning = motion.joints[0], motion.joints[-1]
     dwell_s = problem.options.dwell_s
-    still = np.array([thinning, thinning]) if dwell_s > 0 else thinning[None]
+    still = np.array([thinning, thinning]) if problem.options.dwells else thinning[None]
     pieces = {
         "transfer": time_joint_line(problem.robot, reference, standby, TRAJECTORY_STEP_S),
         "cut_in": motion,

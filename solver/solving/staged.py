@@ -128,7 +128,7 @@ def choice_from_json(problem: Problem, text: str) -> Choice:
         candidate = Candidate(**entry["candidate"])
         return Stop(
             replace(task, retreats_m=retreats_m[entry["retreats"]]),
-            replace(candidate, thinning_joints=tuple(candidate.thinning_joints)),
+            replace(candidate, thinning_joints=tuple(candidate.thinning_joints), others=()),
             Arc(**entry["arc"]),
             entry["angle_rad"],
         )
@@ -155,7 +155,6 @@ def _as_one(problem: Problem) -> bool:
         options.order != "independent"
         and METHODS[options.method].chooses_among_arcs
         and has_closed_form(problem.robot, problem.mounted_tool)
-        and not (options.method == "ncos" and options.relaxed)
     )
 
 

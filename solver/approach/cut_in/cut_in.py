@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
 from solver.approach.cut_in.tolerances import (
+    BESIDE_ROW_M,
     DEVIATION_SAMPLES,
     EVEN_ROWS_M,
     EXCHANGE_ZOOMS,
+    NEAR_RATE_ROOM,
     RATE_ROOM_EXCESS,
 )
 from solver.approach.task.candidate import Candidate
@@ -229,8 +231,9 @@ def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
     spacing = np.diff(coarse)
     if np.all(np.abs(spacing - spacing[0]) <= EVEN_ROWS_M):
         leaves = may_leave_between(_postures(task, candidate, coarse), task.lower, task.upper)
-        margins = (reach(coarse), slower(coarse))
-        if not leaves and not any(may_fall_below_zero_between(margin) for margin in margins):
+        room = slower(coarse)
+        falls = any(may_fall_below_zero_between(margin) for margin in (reach(coarse), room))
+        if not (leaves or falls or _dips_beside(coarse, room, slower)):
             return None
     for measure, allowed in (
         (reach, REACH_ROUNDING_M), (inside, LIMIT_EXCESS_RAD / 2), (slower, RATE_ROOM_EXCESS),
@@ -239,6 +242,19 @@ def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
         if value < -allowed:
             return retreat
     return None
+
+
+def _dips_beside(coarse: Array, room: Array, measure: Callable[[Array], Array]) -> bool:
+    """Whether the room of a rate that a row all but uses up goes on falling beside that row.
+
+    A dip that begins in a row may be too narrow for a parabola through three of them.
+    """
+    near = coarse[room < NEAR_RATE_ROOM]
+    beside = np.clip(np.concatenate((near + BESIDE_ROW_M, near - BESIDE_ROW_M)), 0.0, coarse[0])
+    own = np.tile(room[room < NEAR_RATE_ROOM], 2)
+    down = np.argsort(-beside)
+    found = measure(np.append(beside[down], 0.0))[:-1]
+    return bool(np.any(found < own[down] - RATE_ROOM_EXCESS))
 
 
 def _lowest(coarse: Array, measure: Callable[[Array], Array]) -> tuple[float, float]:

@@ -27,3 +27,11 @@ as they may the sine is a hundredth, so that is 1e-7 of the rate, a tenth of wha
 DEVIATION_SAMPLES: Final = 3
 """Postures between two rows at which the distance from the straight line is measured. It is nearly
 a parabola between rows, so its middle is among them and its quarter points tell if it is not."""
+
+NEAR_RATE_ROOM: Final = 1e-3
+"""Room of a rate [a sine] below which a row is looked at beside it as well: a tenth of the sine
+where joints turn as fast as they may."""
+
+BESIDE_ROW_M: Final = 1e-5
+"""How far beside it [m]: no dip that begins in a row ends so near, and what it falls is far above
+rounding."""

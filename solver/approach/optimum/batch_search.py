@@ -15,6 +15,7 @@ from solver.approach.arcs.turns import (
     turns_along_path,
 )
 from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
+from solver.approach.cut_in.tolerances import BESIDE_ROW_M, NEAR_RATE_ROOM, RATE_ROOM_EXCESS
 from solver.approach.optimum.cheapest import cheapest, cheapest_scratch
 from solver.approach.optimum.effort_samples import path_joints
 from solver.approach.task.constraints import BESIDE, REACH
@@ -71,8 +72,29 @@ def write_path(task, angle, branch, sent, work, path):
     for i in (REACH, BESIDE):
         if may_fall_below_zero_between(turns[6 + i, : len(work.room)]):
             return True
-    leaves = may_leave_between(work.rows, lower, upper)
-    return leaves or may_fall_below_zero_between(work.room)
+    if may_leave_between(work.rows, lower, upper) or may_fall_below_zero_between(work.room):
+        return True
+    return dips_beside(task, angle, branch // 2, work.room)
+
+
+@kernel
+def dips_beside(task, angle, arm, room):
+    """Whether the room of a rate that a row all but uses up goes on falling beside that row.
+
+    See `solver.approach.cut_in.cut_in.broken_between`, which looks for the same.
+    """
+    for n in range(len(room)):
+        if room[n] >= NEAR_RATE_ROOM:
+            continue
+        here, beside = task.retreats[n], np.empty(2)
+        beside[0] = min(here + BESIDE_ROW_M, task.retreats[0])
+        beside[1] = max(here - BESIDE_ROW_M, 0.0)
+        turns = np.empty((TURN_ROWS, path_columns(2)))
+        turns_along_path(PackedTask(task.numbers, beside, task.cos_steps), angle, arm, turns)
+        g = unpack_geometry(task.numbers)
+        if min(row_room(g, turns, 0), row_room(g, turns, 1)) < room[n] - RATE_ROOM_EXCESS:
+            return True
+    return False
 
 
 @kernel

@@ -16,6 +16,7 @@ class Candidate:
         effort: what the method believes the effort to be.
         iterations: iterations or candidates the method spent.
         status: the method's own account.
+        others: what the method proposes where this one does not verify, the best first.
     """
 
     approach_angle_rad: float
@@ -25,3 +26,4 @@ class Candidate:
     effort: float
     iterations: int
     status: str
+    others: tuple["Candidate", ...] = ()

@@ -60,15 +60,9 @@ SQP_DAMPING: Final = 1e-6
 """Damping, relative to the equations' size of one, of a step that only repairs them: it has to be
 the shortest of several."""
 
-RELAXED_SWINGS: Final = 6
-"""Directions in which the tool leans by its whole tolerance where a relaxed programme starts."""
-
-RELAXED_SAMPLES: Final = 72
-"""Approach angles, five degrees apart, among which those starts are looked for."""
-
-RELAXED_ROUNDS: Final = 6
-"""How often a row of the cut-in that does not hold is added to a relaxed programme, or its limits
-are drawn in because a joint is too fast there."""
+WHOLE_CUT_IN_ROUNDS: Final = 6
+"""How often a row of the cut-in that does not hold is added to a programme, or its limits are
+drawn in because a joint is too fast there."""
 
 QP_TOLERANCE: Final = 1e-10
 """Tolerance of the quadratic programmes [as scaled, near one], below that of the programme they are

@@ -13,10 +13,12 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.relaxation import placement
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.kinematics.forward import forward_kinematics
-from solver.methods.ncos import solve_ncos, solve_on_arc
+from solver.methods.coupling import Coupling
+from solver.methods.ncos import improved, solve_ncos, solve_on_arc
 from solver.methods.nlp import ipopt, sqp
 from solver.methods.nlp.backends import BACKENDS
 from solver.methods.nlp.quadratic import QP_SOLVERS
+from solver.methods.relaxed.approach import between_neighbours
 from solver.methods.semi_analytic import solve_ssas
 from solver.problem.effort import posture_effort
 from solver.tolerances import LIMIT_EXCESS_RAD
@@ -108,7 +110,7 @@ def test_a_failed_programme_returns_the_warm_start_and_says_so(
         assert approach.effort == pytest.approx(expected.effort, rel=1e-12)
 
 
-def test_a_failed_relaxed_programme_returns_the_best_corner_and_says_so(
+def test_a_failed_relaxed_programme_returns_what_it_started_from_and_says_so(
     tabletop: Robot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sqp, "SQP_ITERATIONS", 0)
@@ -157,7 +159,7 @@ def test_relaxed_is_never_dearer_and_stays_inside(
         inside = np.minimum(rows - task.lower, task.upper - rows).min()
         assert inside >= -LIMIT_EXCESS_RAD
         assert relaxed.effort == effort_of(task, relaxed.thinning_joints)
-        assert relaxed.effort <= effort_of(task, unrelaxed.thinning_joints)
+        assert relaxed.effort <= effort_of(task, unrelaxed.thinning_joints) * (1 + 1e-12)
         cheaper += relaxed.effort < unrelaxed.effort * (1 - 1e-6)
     assert cheaper >= 5
 
@@ -194,7 +196,7 @@ def test_relaxations_rescue_targets_and_the_rescued_verify(tabletop: Robot) -> N
             assert max(approach.strike_m, approach.tilt_rad) > 1e-3
         else:
             assert approach.reason is not None
-            assert "relaxed" in approach.reason.detail
+            assert "relaxations" in approach.reason.detail
             assert approach.reason.code != "solver_failed"
 
 
@@ -203,19 +205,16 @@ def test_the_next_target_is_looked_ahead_to(tabletop: Robot) -> None:
     for options in ({}, {"norm": "l2"}, RELAXED):
         changed = 0
         for task in tasks(tabletop, 26, 6, **options):
-            alone = solve_ncos(task)
+            alone, warm_start = solve_ncos(task), best_on_arcs(task)
             assert isinstance(alone, Candidate)
-            following = np.asarray(task.robot.home_joints) + 0.4
-            coupled = solve_ncos(task, tuple(following))
-            assert isinstance(coupled, Candidate)
-            costs = []
-            for answer in (alone, coupled):
-                ends = np.array([task.options.standoff_m, 0.0])
-                standby = retreat_rows(
-                    task.robot, task.tool, answer.thinning_joints, answer.branch, ends
-                )[0]
-                onwards = posture_effort(following, standby, task.joint_weights, task.options.norm)
-                costs.append(answer.effort + onwards)
+            assert warm_start is not None
+            following = tuple(np.asarray(task.robot.home_joints) + 0.4)
+            coupling = Coupling(task, following)
+            if task.options.relaxed:
+                coupled = between_neighbours(task, alone, coupling)
+            else:
+                coupled = improved(task, warm_start, following)
+            costs = [coupling.cost(answer) for answer in (alone, coupled)]
             assert costs[1] <= costs[0] * (1 + 1e-9)
             assert coupled.effort >= alone.effort * (1 - 1e-9) or options is RELAXED
             changed += costs[1] < costs[0] * (1 - 1e-6)

@@ -146,3 +146,16 @@ def test_batches_planned_as_one_verify_and_are_cheaper_than_greedy(
     assert all(entry.accepted for entry in verify_plan(plan).values())
     assert [a.target_id for a in plan.approaches] == [t.id for t in problem.targets]
     assert plan.total_effort < greedy_effort(problem)
+
+
+@pytest.mark.parametrize("value", [5e-324, 1e-300, 1e-160, 1e-20])
+@pytest.mark.parametrize("name", ["dwell_s", "limit_margin_rad", "joint_weights"])
+@pytest.mark.parametrize("order", ["independent", "given", "optimal"])
+def test_numbers_that_underflow_are_answered(
+    tabletop: Robot, order: str, name: str, value: float
+) -> None:
+    """A dwell of 1e-20 s had no place behind the seconds before it, and ended every target."""
+    given: object = [value] * 6 if name == "joint_weights" else value
+    for norm in ("l1", "l2"):
+        plan = solve(data_set_3(tabletop, method="ssas", order=order, norm=norm, **{name: given}))
+        assert plan.planned == 5

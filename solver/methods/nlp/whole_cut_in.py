@@ -1,6 +1,8 @@
-"""The relaxed programme from one start to an exact posture whose whole cut-in holds."""
+"""The programme from one start to an exact posture whose whole cut-in holds, by itself.
 
-from collections.abc import Sequence
+For a start that the closed form had no part in.
+"""
+
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,13 +16,13 @@ from solver.methods.nlp.backends import solve_instance
 from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
 from solver.methods.nlp.slower import slower_limits
-from solver.methods.nlp.tolerances import RELAXED_ROUNDS
+from solver.methods.nlp.tolerances import WHOLE_CUT_IN_ROUNDS
 from solver.robots.model import Array
 from solver.tolerances import LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_BRANCH_RAD
 
 
 @dataclass(frozen=True)
-class RelaxedAnswer:
+class ProgrammeAnswer:
     """What one start came to.
 
     Attributes:
@@ -38,28 +40,26 @@ class RelaxedAnswer:
     thinning: Array | None = None
 
 
-def solve_relaxed(
-    task: ApproachTask, start: Start, next_thinning: Sequence[float] | None
-) -> RelaxedAnswer:
-    """Solves a relaxed task from one start.
+def solve_whole_cut_in(task: ApproachTask, start: Start) -> ProgrammeAnswer:
+    """Solves a task, relaxed or not, from one start.
 
     The programme keeps limits at thinning and standby. A row of the cut-in that does not hold
     becomes a further posture of the programme, which goes on from where it was; one whose joints
     turn too fast gets closer limits.
     """
     spent = 0
-    for _ in range(RELAXED_ROUNDS):
-        shape = shape_of(task, coupled=next_thinning is not None, rows=len(start.postures) - 2)
+    for _ in range(WHOLE_CUT_IN_ROUNDS):
+        shape = shape_of(task, rows=len(start.postures) - 2)
         programme = build_programme(task.robot, shape)
-        instance = make_instance(task, programme, start, next_thinning)
+        instance = make_instance(task, programme, start)
         result = solve_instance(task.robot, instance, task.options)
         spent += result.iterations
         if not result.success:
-            return RelaxedAnswer(result.status, spent, start.tool_side)
+            return ProgrammeAnswer(result.status, spent, start.tool_side)
         seen = placed(task, programme, result.x)
         exact = _exact_posture(task, start.tool_side, seen, result.x[: programme.joints])
         if exact is None:
-            return RelaxedAnswer("not_on_the_closed_form", spent, start.tool_side)
+            return ProgrammeAnswer("not_on_the_closed_form", spent, start.tool_side)
         branch, thinning = exact
         retreats = np.asarray(task.retreats_m)
         rows = retreat_rows(task.robot, task.tool, tuple(thinning), branch, retreats)
@@ -68,10 +68,10 @@ def solve_relaxed(
         if broken is None:
             room = rate_room(task.robot, task.tool, branch, rows)
             if room.min() >= 0.0:
-                return RelaxedAnswer("solved", spent, start.tool_side, branch, thinning)
+                return ProgrammeAnswer("solved", spent, start.tool_side, branch, thinning)
             broken = fast = int(room.argmin())
         elif retreats[broken] in start.retreats_m:
-            return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
+            return ProgrammeAnswer("cut_in_infeasible", spent, start.tool_side)
         postures = result.x[: programme.angle].reshape(programme.postures, programme.joints)
         start = replace(
             start,
@@ -87,10 +87,10 @@ def solve_relaxed(
             limits = start.limits_of(task).copy()
             drawn = slower_limits(task, rows[fast], limits[:, k])
             if drawn is None:
-                return RelaxedAnswer("wrist_jump", spent, start.tool_side)
+                return ProgrammeAnswer("wrist_jump", spent, start.tool_side)
             limits[:, k] = drawn
             start = replace(start, limits=limits)
-    return RelaxedAnswer("cut_in_infeasible", spent, start.tool_side)
+    return ProgrammeAnswer("cut_in_infeasible", spent, start.tool_side)
 
 
 def with_row(task: ApproachTask, start: Start, row: Array, retreat: float) -> Start:

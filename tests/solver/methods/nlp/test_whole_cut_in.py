@@ -9,10 +9,9 @@ from solver import Options, Problem, Robot
 from solver.approach.cut_in.cut_in import retreat_rows
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
-from solver.methods.nlp import relaxed
-from solver.methods.nlp.relaxed import solve_relaxed
-from solver.methods.nlp.starts import corner_tasks, start_at
-from solver.methods.nlp.tolerances import RELAXED_SWINGS
+from solver.methods.nlp import whole_cut_in
+from solver.methods.nlp.starts import start_at
+from solver.methods.nlp.whole_cut_in import solve_whole_cut_in
 from solver.methods.semi_analytic import solve_ssas
 from solver.tolerances import LIMIT_EXCESS_RAD
 from tests.solver.problems import random_targets
@@ -30,28 +29,12 @@ def test_a_row_that_does_not_hold_becomes_a_posture(
     assert isinstance(warm, Candidate)
     assert warm.branch is not None
     start = start_at(task, warm.tool_side, warm.branch, np.asarray(warm.thinning_joints))
-    answer = solve_relaxed(task, start, None)
+    answer = solve_whole_cut_in(task, start)
     assert answer.status == "solved"
     assert answer.thinning is not None
     rows = retreat_rows(
         task.robot, task.tool, tuple(answer.thinning), answer.branch, np.asarray(task.retreats_m)
     )
     assert np.minimum(rows - task.lower, task.upper - rows).min() >= -LIMIT_EXCESS_RAD
-    monkeypatch.setattr(relaxed, "RELAXED_ROUNDS", 1)
-    assert solve_relaxed(task, start, None).status == "cut_in_infeasible"
-
-
-def test_corners_are_the_ends_of_what_is_on(tabletop: Robot) -> None:
-    counts = []
-    for strike, tilt in ((0.0, 0.0), (0.02, 0.0), (0.0, 0.1), (0.02, 0.1)):
-        options = Options(strike_zone_m=strike, tilt_tolerance_rad=tilt)
-        problem = Problem(tabletop, random_targets(seed=63, count=1), options=options)
-        task = approach_task(problem, problem.targets[0], problem.start)
-        corners = corner_tasks(task)
-        counts.append(len(corners))
-        lengths = {round(corner.tool.length_m - task.tool.length_m, 12) for corner in corners}
-        assert lengths == {0.0, -strike}
-        branch = np.array([corner.frame.branch for corner in corners])
-        tilts = np.arccos(np.clip(branch @ task.frame.branch, -1, 1))
-        assert tilts.max() == pytest.approx(tilt, abs=1e-7)
-    assert counts == [1, 2, 1 + RELAXED_SWINGS, 2 * (1 + RELAXED_SWINGS)]
+    monkeypatch.setattr(whole_cut_in, "WHOLE_CUT_IN_ROUNDS", 1)
+    assert solve_whole_cut_in(task, start).status == "cut_in_infeasible"
