@@ -34,10 +34,9 @@ def descend(chain, family, retreats, weights, squared, directions, angle, q):
     """Moves q, in place, to less effort as long as its whole cut-in holds; returns its angle [rad].
 
     A direct search: a step in a direction, shape (k, n + 1) with the angle last, is led back to the
-    target, and taken when it is cheaper and holds. It ends where a joint meets a limit or its
-    reference, at which the l1 norm has its kinks; in every second direction joints that stand
-    there stay, so that the search goes along edges. Neither rates nor singular postures need
-    derivatives, which the programme would.
+    target, and taken when it is cheaper and holds. A joint goes no further than to a limit or to
+    its reference, at which the l1 norm has its kinks; in every second direction joints that stand
+    there stay, so that the search goes along edges.
     """
     n = len(q)
     low, high, trial = np.empty(n), np.empty(n), np.empty(n)
