@@ -17,7 +17,7 @@ import numpy as np
 
 from solver import compiled
 from solver.approach.arcs.of_problem import arcs_of_packed
-from solver.approach.numerical.warm_start import numerical_warm_start
+from solver.approach.numerical.warm_start import numerical_warm_starts
 from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
@@ -83,7 +83,7 @@ def other_arms() -> None:
     """No robot that ships needs the numerical inverse; one brought by somebody may."""
     robot = load_robot("tabletop")
     problem = Problem(robot, [home_target(robot)])
-    numerical_warm_start(approach_task(problem, problem.targets[0], problem.start))
+    numerical_warm_starts(approach_task(problem, problem.targets[0], problem.start), most=1)
 
 
 PARTS: Final[Mapping[str, Callable[[], None]]] = {

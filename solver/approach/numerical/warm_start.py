@@ -5,8 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from solver.approach.numerical.multi_start import PoseFamily, from_starts
-from solver.approach.numerical.tolerances import NUMERICAL_STARTS
+from solver.approach.numerical.refinement import refined
+from solver.approach.numerical.sweep import apart, arrivals_at, from_all_starts
+from solver.approach.numerical.tolerances import NUMERICAL_STARTS, SAME_OPTIMUM_RAD
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.forward import forward_kinematics, jacobian
@@ -18,7 +19,7 @@ from solver.kinematics.numerical import (
     postures_behind,
     rates_behind,
 )
-from solver.problem.effort import joint_costs
+from solver.problem.effort import posture_effort
 from solver.problem.solution import Reason
 from solver.robots.model import Array, Robot, Tool
 from solver.tolerances import JOINT_RATE_RAD_M, LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_POSTURE_RAD
@@ -43,44 +44,42 @@ class NumericalStart:
     effort: float
 
 
-@dataclass(frozen=True)
-class _Found:
-    """Where the starts of one tool side ended: postures (k, n), angles (k,), errors (k,)."""
-
-    side: int
-    postures: Array
-    angles: Array
-    errors: Array
-
-
-def numerical_warm_start(task: ApproachTask) -> NumericalStart | Reason:
-    """The cheapest feasible approach that a fixed number of seeded starts lead to.
+def numerical_warm_starts(task: ApproachTask, most: int) -> tuple[NumericalStart, ...] | Reason:
+    """The cheapest feasible approaches that a fixed number of seeded starts lead to.
 
     The starts are the reference posture and others drawn evenly inside the limits with the seed of
     the options. Each is led to the target by damped least squares with the approach angle free,
-    leaning towards the reference, and polished by Newton's method. The cut-in follows from its
-    neighbour row by row. Not every solution is found: a reason says what the starts met, not that
-    there is nothing else.
+    leaning towards the reference, and polished by Newton's method; from the cheapest whose cut-in
+    holds a direct search goes down, limits, rates and kinks of the l1 norm in view. Not every
+    solution is found: a reason says what the starts met, not that there is nothing else.
+
+    Args:
+        task: of any arm.
+        most: how many are returned at most, each another posture, the cheapest first.
     """
-    stages = _Stages()
-    for found in _from_all_starts(task, task.lower, task.upper):
-        reached = found.errors <= POSITION_ERROR_M
-        inside = task.inside(found.postures).min(axis=-1)
-        good = np.flatnonzero(reached & (inside >= -LIMIT_EXCESS_RAD / 2))
-        efforts = _efforts(task, found.postures[good])
-        for k in good[np.argsort(efforts, kind="stable")]:
-            effort = float(_efforts(task, found.postures[k]))
-            if stages.best is not None and effort >= stages.best.effort:
-                break
-            stages.thinning = True
-            rows = postures_behind(
-                task.robot, task.tool, found.postures[k], np.asarray(task.retreats_m)
-            )
-            if _cut_in_holds(task, rows, stages):
-                angle = signed_angle(float(found.angles[k]))
-                stages.best = NumericalStart(angle, found.side, found.postures[k], effort)
-                break
-    return stages.best if stages.best is not None else _reason(task, stages)
+    arrivals = arrivals_at(task)
+    starts: list[NumericalStart] = []
+    for one in refined(task, arrivals):
+        if len(starts) == most:
+            break
+        if not apart(one.posture, (start.thinning_joints for start in starts), SAME_OPTIMUM_RAD):
+            continue
+        posture = polished_thinning(task, one.angle_rad, one.tool_side, one.posture)
+        if posture is not None:
+            starts.append(_start(task, one.angle_rad, one.tool_side, posture))
+    if starts:
+        return tuple(sorted(starts, key=lambda start: start.effort))
+    stages = _Stages(thinning=bool(arrivals))
+    for one in arrivals:
+        rows = postures_behind(task.robot, task.tool, one.posture, np.asarray(task.retreats_m))
+        if _cut_in_holds(task, rows, stages):
+            return (_start(task, one.angle_rad, one.tool_side, one.posture),)
+    return _reason(task, stages)
+
+
+def _start(task: ApproachTask, angle_rad: float, tool_side: int, posture: Array) -> NumericalStart:
+    effort = posture_effort(posture, task.reference, task.joint_weights, task.options.norm)
+    return NumericalStart(signed_angle(angle_rad), tool_side, posture, effort)
 
 
 def polished_thinning(
@@ -125,43 +124,9 @@ def same_side(robot: Robot, tool: Tool, rows: Array) -> bool:
 class _Stages:
     """How far the starts came."""
 
-    best: NumericalStart | None = None
     thinning: bool = False
     standby: bool = False
     standby_margin: float = -np.inf
-
-
-def _from_all_starts(task: ApproachTask, lower: Array, upper: Array) -> list[_Found]:
-    chain, frame = chain_of(task.robot, task.tool), task.frame
-    reference = np.asarray(task.reference)
-    rng = np.random.default_rng(task.options.seed)
-    drawn = rng.uniform(task.lower, task.upper, (NUMERICAL_STARTS - 1, len(reference)))
-    starts = np.concatenate((reference[None], drawn))
-    # Each begins at the angle that its own tool is closest to.
-    directions = forward_kinematics(task.robot, task.tool, starts)[:, :3, 2]
-    nearest = np.arctan2(directions @ frame.sideways, directions @ frame.outward)
-    found = []
-    for side in task.tool_sides:
-        family = PoseFamily(
-            position=np.asarray(task.target.position_m, dtype=np.float64),
-            branch=frame.branch,
-            y_axis=side * frame.branch,
-            outward=frame.outward,
-            sideways=frame.sideways,
-            lower=lower,
-            upper=upper,
-            reference=reference,
-        )
-        postures, errors = np.empty((2 * len(starts), starts.shape[1])), np.empty(2 * len(starts))
-        angles = np.tile(nearest, 2)
-        from_starts(chain, family, starts.copy(), angles, postures, errors)
-        found.append(_Found(side, postures, angles, errors))
-    return found
-
-
-def _efforts(task: ApproachTask, postures: Array) -> Array:
-    costs = joint_costs(postures - np.asarray(task.reference), task.options.norm)
-    return np.asarray(costs @ np.asarray(task.joint_weights))
 
 
 def _cut_in_holds(task: ApproachTask, rows: Array, stages: _Stages) -> bool:
@@ -213,7 +178,7 @@ def _without_limits(task: ApproachTask, starts: str) -> Reason:
     turning = task.robot.turning > 0
     lower = np.where(turning, -np.inf, task.lower)
     upper = np.where(turning, np.inf, task.upper)
-    found = _from_all_starts(task, lower, upper)
+    found = from_all_starts(task, lower, upper)
     postures = np.concatenate([entry.postures for entry in found])
     errors = np.concatenate([entry.errors for entry in found])
     reached = errors <= POSITION_ERROR_M
