@@ -10,11 +10,11 @@ from enum import IntEnum
 
 import numpy as np
 
+from solver.approach.refusal.displacement_constraints import choose_thinning_turns
 from solver.approach.task.feasibility import (
     fastest_joint,
     limit_margin,
     posture,
-    thinning,
     tool_axes,
     trace,
 )
@@ -50,10 +50,10 @@ def failure(task, angle, branch, rows):
     axes, last = np.empty((3, 3)), len(task.retreats) - 1
     tool_axes(task, angle, axes)
     standby = rows[0]
-    reach = posture(task, axes, 0.0, branch, standby)
+    reach = posture(task, axes, 0.0, branch, rows[last])
     if reach < 0:
         return Stage.REACH_AT_THINNING, reach, 0, last
-    thinning(task, angle, branch, rows[last])
+    choose_thinning_turns(task, rows[last])
     inside, joint = limit_margin(task, rows[last])
     if inside < 0:
         return Stage.LIMIT_AT_THINNING, inside, joint, last

@@ -6,19 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.approach.arcs.arcs import sample_angles, task_arcs
+from solver.approach.arcs.arcs import task_arcs
 from solver.approach.cut_in.cut_in import broken_between
 from solver.approach.refusal.displacement_search import nearest_of_all
+from solver.approach.refusal.offered import offer_holds
 from solver.approach.refusal.tolerances import (
-    NEAREST_ANGLES,
     NEAREST_INSIDE_ARC_RAD,
     NEAREST_SPARES_M,
+    NEAREST_UPRIGHT_SINE,
 )
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.feasibility import trace
-from solver.approach.task.frame import signed_angle
+from solver.approach.task.frame import approach_frame, signed_angle
 from solver.approach.task.task import ApproachTask
 from solver.approach.uncertainty.robustness import bears_uncertainty, needed_margin
+from solver.problem.retreats import looked_at_retreats
 from solver.problem.solution import Arc, Nearest
 from solver.robots.model import Array
 
@@ -59,25 +61,54 @@ def nearest_displacement(task: ApproachTask) -> Nearest | None:
 
 def _nearest_with(task: ApproachTask, spread: float) -> Nearest | None:
     """The smallest displacement found after which the target may move by `spread` [m]."""
-    angles = sample_angles(NEAREST_ANGLES)
-    offers: list[tuple[float, int, int, Array]] = []
+    best, offer = np.inf, None
     for side in task.tool_sides:
-        found, branch, x = nearest_of_all(task.for_kernels(side), angles, spread)
+        found, branch, x = nearest_of_all(task.for_kernels(side), spread, best)
         if found:
-            offers.append((float(np.linalg.norm(x[:3])), -side, int(branch), x))
-    if not offers:
+            best, offer = float(np.linalg.norm(x[:3])), (side, int(branch), x)
+    if offer is None:
         return None
-    _, negative_side, branch, x = min(offers, key=lambda offer: offer[:3])
+    side, branch, x = offer
     x_m, y_m, z_m = (float(value) for value in task.robot.mount[:3, :3] @ x[:3])
     moved = displaced(task, (x_m, y_m, z_m))
-    direction = task.frame.direction(float(x[3]))
-    angle = math.atan2(direction @ moved.frame.sideways, direction @ moved.frame.outward)
-    verified = any(
-        (arc.tool_side, arc.branch) == (-negative_side, branch)
+    angle = _same_direction(task, tuple(moved.target.position_m), float(x[3]))
+    holds = _holds(task, side, branch, x) if needed_margin(task.target) == 0 else None
+    if holds is None:
+        holds = _on_an_arc(moved, angle, side, branch)
+        holds = holds and _holds_between_rows(moved, angle, side, branch)
+    return Nearest(DISPLACEMENT, signed_angle(angle), (x_m, y_m, z_m), holds)
+
+
+def _same_direction(task: ApproachTask, position: tuple[float, ...], angle: float) -> float:
+    """The angle of an approach direction where the target stands at another position [rad]."""
+    branch = task.frame.branch
+    place = np.asarray(position)
+    across = place - (place @ branch) * branch
+    if across @ across <= (NEAREST_UPRIGHT_SINE * float(np.abs(place).max())) ** 2:
+        # All but along the branch "straight out" is chosen with care, and not from the position.
+        across = approach_frame(position, task.target.branch_direction).outward
+    turned = math.atan2(across @ task.frame.sideways, across @ task.frame.outward)
+    return angle - turned
+
+
+def _holds(task: ApproachTask, tool_side: int, branch: int, x: Array) -> bool | None:
+    """Whether an exact target holds where it is displaced to; None where that needs a closer look.
+
+    That is between the rows of the cut-in, or where rows were added to those that are even.
+    """
+    if len(task.retreats_m) > len(looked_at_retreats(task.options)):
+        return None
+    packed = task.packed(tool_side)
+    inside, look_closer = offer_holds(task.for_kernels(tool_side), packed, branch, x)
+    return None if inside and look_closer else bool(inside)
+
+
+def _on_an_arc(task: ApproachTask, angle: float, tool_side: int, branch: int) -> bool:
+    return any(
+        (arc.tool_side, arc.branch) == (tool_side, branch)
         and (angle - arc.lower_rad) % (2 * np.pi) <= arc.upper_rad - arc.lower_rad
-        for arc in task_arcs(moved)
-    ) and _holds_between_rows(moved, angle, -negative_side, branch)
-    return Nearest(DISPLACEMENT, signed_angle(angle), (x_m, y_m, z_m), verified)
+        for arc in task_arcs(task)
+    )
 
 
 def _holds_between_rows(task: ApproachTask, angle: float, tool_side: int, branch: int) -> bool:

@@ -7,20 +7,40 @@ import numpy as np
 from solver.approach.refusal.tolerances import (
     NEAREST_ANGLE_SCALE_M,
     NEAREST_DAMPING,
-    NEAREST_QP_CONVERGED_M,
-    NEAREST_QP_SWEEPS,
 )
 from solver.compiled import kernel
 from solver.tolerances import LEAST_DIVISOR
 
 
 @kernel
+def lead(inverse, gradients, j, towards, curvature):
+    """Where constraint j pushes, and how much it gains by that."""
+    curvature[j] = LEAST_DIVISOR
+    for i in range(4):
+        towards[j, i] = 0.0
+        for k in range(4):
+            towards[j, i] += inverse[i, k] * gradients[j, k]
+        curvature[j] += gradients[j, i] * towards[j, i]
+
+
+@kernel
 def penalty_programme(
-    inverse, slope, values, gradients, most, multipliers, step, towards, curvature
+    inverse,
+    slope,
+    values,
+    gradients,
+    most,
+    multipliers,
+    step,
+    towards,
+    curvature,
+    converged,
+    sweeps,
 ):
     """Minimises step' H step / 2 + slope' step + most sum max(0, -(values + gradients step)).
 
-    Coordinate ascent in the dual (Hildreth), whose multipliers the penalty keeps below `most`.
+    Coordinate ascent in the dual (Hildreth), whose multipliers the penalty keeps below `most`. It
+    goes on from those that it is given: from step to step of a search the same constraints push.
     Between sweeps over all constraints those that push already are swept until they agree.
 
     Args:
@@ -29,10 +49,12 @@ def penalty_programme(
         values: of the constraints, shape (n,).
         gradients: theirs, shape (n, 4).
         most: penalty.
-        multipliers: written, shape (n,).
+        multipliers: to begin with, and written, shape (n,).
         step: written, shape (4,).
         towards: scratch, shape (n, 4).
         curvature: scratch, shape (n,).
+        converged: change of a multiplier, which is a length, below which it is solved [m].
+        sweeps: how many there are at most.
     """
     count = len(values)
     for i in range(4):
@@ -40,10 +62,13 @@ def penalty_programme(
         for k in range(4):
             step[i] -= inverse[i, k] * slope[k]
     for j in range(count):
-        multipliers[j] = 0.0
         curvature[j] = -1.0
+        if multipliers[j] > 0.0:
+            lead(inverse, gradients, j, towards, curvature)
+            for i in range(4):
+                step[i] += towards[j, i] * multipliers[j]
     everything = True
-    for _ in range(NEAREST_QP_SWEEPS):
+    for _ in range(sweeps):
         largest = 0.0
         for j in range(count):
             if not everything and multipliers[j] == 0.0:
@@ -54,12 +79,7 @@ def penalty_programme(
             if multipliers[j] == 0.0 and value >= 0.0:
                 continue
             if curvature[j] < 0.0:
-                curvature[j] = LEAST_DIVISOR
-                for i in range(4):
-                    towards[j, i] = 0.0
-                    for k in range(4):
-                        towards[j, i] += inverse[i, k] * gradients[j, k]
-                    curvature[j] += gradients[j, i] * towards[j, i]
+                lead(inverse, gradients, j, towards, curvature)
             changed = min(max(multipliers[j] - value / curvature[j], 0.0), most)
             change = changed - multipliers[j]
             if change != 0.0:
@@ -67,7 +87,7 @@ def penalty_programme(
                 largest = max(largest, abs(change))
                 for i in range(4):
                     step[i] += towards[j, i] * change
-        if largest <= NEAREST_QP_CONVERGED_M:
+        if largest <= converged:
             if everything:
                 break
             everything = True

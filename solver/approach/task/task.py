@@ -66,6 +66,13 @@ class ApproachTask:
 
     def for_kernels(self, tool_side: int) -> CutInTask:
         """The task as the kernels take it, with the tool on one side, in the mount's frame."""
+        return self._for_kernels[tool_side]
+
+    @cached_property
+    def _for_kernels(self) -> dict[int, CutInTask]:
+        return {side: self._kernel_task(side) for side in self.tool_sides}
+
+    def _kernel_task(self, tool_side: int) -> CutInTask:
         position, y_axis, outward, sideways = self._vectors(tool_side)
         return CutInTask(
             geometry=wrist_geometry(self.robot, self.tool),

@@ -35,22 +35,47 @@ def joint_rates(g, q, axes, lever, turn, rates, reach):
     """
     t1, t2, t3 = q[0] + g.offsets[0], q[1] + g.offsets[1], q[2] + g.offsets[2]
     t4, t5 = q[3] + g.offsets[3], q[4] + g.offsets[4]
-    c1, s1 = math.cos(t1), math.sin(t1)
-    elbow = t2 + t3 + g.beta
-    fore_r, fore_s = g.l3 * math.cos(elbow), g.l3 * math.sin(elbow)
-    r = g.a2 * math.cos(t2) + fore_r
-    s = g.a2 * math.sin(t2) + fore_s
+    first = math.cos(t1), math.sin(t1)
+    second, both = (math.cos(t2), math.sin(t2)), (math.cos(t2 + t3), math.sin(t2 + t3))
+    fourth = math.cos(t4), math.sin(t4)
+    return turned_rates(
+        g, first, second, both, fourth, math.sin(t5), axes, lever, turn, rates, reach
+    )
+
+
+@kernel
+def turned_rates(g, first, second, both, fourth, sin5, axes, lever, turn, rates, reach):
+    """`joint_rates` from the posture's turns.
+
+    Args:
+        g: the arm.
+        first: cosine and sine of theta1.
+        second: of theta2.
+        both: of theta2 + theta3.
+        fourth: of theta4.
+        sin5: sine of theta5, whose sign does not matter.
+        axes: as for `joint_rates`, and so are the others.
+        lever: distance [m].
+        turn: axis.
+        rates: written.
+        reach: written.
+    """
+    c1, s1 = first
+    c23, s23 = both
+    c4, s4 = fourth
+    fore_r = g.l3 * (c23 * g.cos_beta - s23 * g.sin_beta)
+    fore_s = g.l3 * (s23 * g.cos_beta + c23 * g.sin_beta)
+    r = g.a2 * second[0] + fore_r
+    s = g.a2 * second[1] + fore_s
     x = r + g.a1
     x = math.copysign(max(abs(x), SINGULAR_SINE * g.a2), x)
     area = r * fore_s - s * fore_r  # a2 l3 sin(gamma): zero for a stretched or folded arm
     area = math.copysign(max(abs(area), SINGULAR_SINE * g.a2 * g.l3), area)
-    c23, s23 = math.cos(t2 + t3), math.sin(t2 + t3)
     x3 = (c1 * c23, s1 * c23, g.sign1 * s23)
     y3 = (g.sign3 * g.sign1 * s1, -g.sign3 * g.sign1 * c1, 0.0)
     z3 = (g.sign3 * s23 * c1, g.sign3 * s23 * s1, -g.sign3 * g.sign1 * c23)
-    c4, s4 = math.cos(t4), math.sin(t4)
     cos5 = z3[0] * axes[0, 2] + z3[1] * axes[1, 2] + z3[2] * axes[2, 2]
-    square5 = max(math.sin(t5) ** 2, SINGULAR_SINE**2)
+    square5 = max(sin5**2, SINGULAR_SINE**2)
     rho = math.hypot(x, g.shoulder)
     distance = math.hypot(r, s)
     outer, inner, post = g.a2 + g.l3 - distance, distance - abs(g.a2 - g.l3), rho - abs(g.shoulder)
