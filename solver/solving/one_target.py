@@ -16,9 +16,8 @@ from solver.problem.solution import INFEASIBLE, Approach, Reason, SolverReport
 from solver.problem.targets import Target
 from solver.sequencing.programmed import programmed
 from solver.sequencing.sequence import Stop
-from solver.solving.proposal import propose
+from solver.solving.proposal import judged, propose
 from solver.tolerances import EXCHANGE_ROUNDS
-from solver.verification.verify import judge
 
 
 def plan_target(
@@ -60,7 +59,7 @@ def plan_target(
     if problem.options.certify:
         bound = certify_task(task, approach.effort).lower_bound
         approach = replace(approach, lower_bound=bound)
-    return replace(judge(problem, approach, reference), arcs=arcs)
+    return replace(judged(problem, approach, reference), arcs=arcs)
 
 
 def solve_between_rows_too(

@@ -1,6 +1,7 @@
 """From a candidate and its cut-in to a whole approach with timed motion, for the verifier."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,12 +12,13 @@ from solver.motion.timing import TimedRows, time_joint_line
 from solver.motion.transfers.joint_line import joint_line
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
-from solver.problem.solution import Approach, Segment, SolverReport, Trajectory
+from solver.problem.solution import PLANNED, Approach, Segment, SolverReport, Trajectory
 from solver.problem.targets import Target
 from solver.robots.model import Array
+from solver.solving.tolerances import CLAIM_HALVINGS
 from solver.tolerances import TRAJECTORY_STEP_S
 from solver.verification.motion_residuals import cut_in_margin
-from solver.verification.verify import thinning_placement
+from solver.verification.verify import judge, thinning_placement, verify
 
 PROPOSED = "proposed"
 
@@ -57,6 +59,25 @@ def propose(
         transfer=transfer,
         trajectory=trajectory,
     )
+
+
+def judged(problem: Problem, approach: Approach, reference: Sequence[float]) -> Approach:
+    """What the verifier says of an approach; a displacement margin that it refutes is halved.
+
+    The search for the nearest limit is local, and far from the posture it may end at another one.
+    """
+    verdict = judge(problem, approach, reference)
+    for halvings in range(CLAIM_HALVINGS + 1):
+        claim = approach.displacement_margin_m
+        if verdict.status == PLANNED or not claim:
+            break
+        failures = verify(problem, approach, reference).failures
+        if [residual.name for residual in failures] != ["displacement_margin_claim_m"]:
+            break
+        less = claim / 2 if halvings < CLAIM_HALVINGS else 0.0
+        approach = replace(approach, displacement_margin_m=less)
+        verdict = judge(problem, approach, reference)
+    return verdict
 
 
 def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) -> float | None:

@@ -21,6 +21,7 @@ from solver.verification.path_residuals import (
     ClaimedPaths,
     branch_residuals,
     deviation_residuals,
+    displacement_residuals,
     efforts_between,
     margin_residuals,
     path_residuals,
@@ -69,15 +70,16 @@ def judge_many(
     claimed = _claimed(proposed)
     standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
     deviations, margins = _as_executed(problem, proposed.branches, claimed)
+    room = displacement_margins(robot, tool, options, proposed.branches, thinning)
     residuals = (
         *path_residuals(problem, claimed, standby, thinning),
         *branch_residuals(problem, claimed, proposed.branches),
         *deviation_residuals(problem, deviations, deviations),
         *margin_residuals(problem, claimed, margins, margins),
+        *displacement_residuals(problem, claimed, proposed.branches, room, np.zeros_like(room)),
     )
     accepted = np.logical_and.reduce([residual.accepted for residual in residuals])
     accepted &= np.isin(proposed.tool_sides, (1, -1) if options.symmetric_tool else (1,))
-    room = displacement_margins(robot, tool, options, proposed.branches, thinning)
     efforts = efforts_between(problem, thinning, proposed.references)
     columns = zip(
         proposed.target_ids,

@@ -14,7 +14,7 @@ from solver.approach.cut_in.cut_in import refined_rows
 from solver.approach.numerical.warm_start import same_side
 from solver.approach.task.frame import approach_frame
 from solver.approach.task.relaxation import Placement, placement, rotation, shortened
-from solver.approach.uncertainty.robustness import needed_margin, path_displacement_margin
+from solver.approach.uncertainty.robustness import needed_margin
 from solver.kinematics.families import has_branches
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES
@@ -262,12 +262,9 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
         # Only an arm without a closed form has neither; `_branch_residuals` checks that it is one.
         yield Residual("displacement_margin_absent", float(claim.branch is not None), 0.0)
         return
-    margin = path_displacement_margin(
-        problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints[-1]
-    )
-    found, claims = np.array([margin]), np.array([claim.displacement_margin_m])
-    needed = np.array([needed_margin(target)])
-    yield from _single(displacement_residuals(found, claims, needed))
+    claimed, branches = _claimed_path(problem, target, claim), np.array([claim.branch])
+    claims, needed = np.array([claim.displacement_margin_m]), np.array([needed_margin(target)])
+    yield from _single(displacement_residuals(problem, claimed, branches, claims, needed))
 
 
 def _refined(problem: Problem, claimed: ClaimedPaths, branch: int | None) -> tuple[Array, float]:

@@ -33,3 +33,7 @@ DISPLACEMENT_STEP_M: Final = 1e-9
 STRAIGHT_WRIST_SINE: Final = 10 * SINGULAR_SINE
 """Sine of joint 5 below which the search for the nearest straight wrist has come to it; nearer,
 rates are no longer those of the posture."""
+
+PROBE_ENDS_RAD: Final = 1e-4
+"""How far a joint may be from its limit where a search that began beside a straight wrist says that
+it meets it [rad]: a hundredth of what it turns in a millimetre there."""
