@@ -7,6 +7,7 @@ import numpy as np
 
 from solver.approach.cut_in.cut_in import CutIn
 from solver.approach.task.candidate import Candidate
+from solver.approach.uncertainty.levels import told_level
 from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.motion.timing import TimedRows, time_joint_line
 from solver.motion.transfers.joint_line import joint_line
@@ -39,7 +40,8 @@ def propose(
         transfer = joint_line(problem.robot, start, standby)
         trajectory = _trajectory(problem, start, cut_in.motion)
     used = thinning_placement(problem, target, candidate.tool_side, thinning)
-    options = problem.options
+    options, room = problem.options, _displacement_margin(problem, candidate, cut_in)
+    level, short = told_level(options, target, room)
     return Approach(
         target_id=target.id,
         status=PROPOSED,
@@ -55,7 +57,9 @@ def propose(
         path_deviation_m=cut_in.deviation_m,
         effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
         margin_rad=cut_in_margin(problem, cut_in.path_joints, cut_in.rows),
-        displacement_margin_m=_displacement_margin(problem, candidate, cut_in),
+        displacement_margin_m=room,
+        position_margin_m=level,
+        margin_short=short,
         transfer=transfer,
         trajectory=trajectory,
     )
@@ -75,7 +79,11 @@ def judged(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         if [residual.name for residual in failures] != ["displacement_margin_claim_m"]:
             break
         less = claim / 2 if halvings < CLAIM_HALVINGS else 0.0
-        approach = replace(approach, displacement_margin_m=less)
+        target = problem.targets_by_id[approach.target_id]
+        level, short = told_level(problem.options, target, less)
+        approach = replace(
+            approach, displacement_margin_m=less, position_margin_m=level, margin_short=short
+        )
         verdict = judge(problem, approach, reference)
     return verdict
 
