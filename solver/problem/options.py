@@ -18,7 +18,7 @@ FULL_ANSWER: Final = ("path", "transfer", "trajectory")
 INCLUDES: Final = (*FULL_ANSWER, "arcs")
 FULL_ANSWER_TARGETS: Final = 50
 MOST_WEIGHT: Final = 1e6
-DEFAULT_POSITION_MARGIN_M: Final = 0.0
+DEFAULT_POSITION_MARGIN_M: Final = 0.001
 """With a closed form; without one it is 0."""
 
 # Ranges outside which an option makes no sense: (lowest, highest), both allowed.

@@ -202,7 +202,7 @@ def test_the_next_target_is_looked_ahead_to(tabletop: Robot) -> None:
     """The coupled cost is that of thinning and of the travel onwards, and is never dearer."""
     for options in ({}, {"norm": "l2"}, RELAXED):
         changed = 0
-        for task in tasks(tabletop, 26, 6, **options):
+        for task in tasks(tabletop, 26, 6, position_margin_m=0.0, **options):
             alone = solve_ncos(task)
             assert isinstance(alone, Candidate)
             following = np.asarray(task.robot.home_joints) + 0.4
