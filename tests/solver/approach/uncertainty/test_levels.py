@@ -139,7 +139,7 @@ def test_levels_that_are_not_true_are_refused(tabletop: Robot) -> None:
         {"margin_short": True},
         {"displacement_margin_m": 0.5 * MARGIN_M},
     ):
-        spoiled = replace(approach, **wrong)  # type: ignore[arg-type]
+        spoiled = replace(approach, **wrong)
         assert not verify(problem, spoiled, problem.start).accepted
     exact = replace(problem, options=replace(problem.options, position_margin_m=0.0))
     assert not verify(exact, approach, problem.start).accepted
