@@ -31,13 +31,16 @@ class TargetSet:
         return TargetSet(self.positions[chosen], self.directions[chosen])
 
     def problem(self, **options: Any) -> Problem:
-        """A problem of the table-top arm; targets are named by their index, options by keyword."""
+        """A problem of the table-top arm; targets are named by their index, options by keyword.
+
+        Without `position_margin_m` unless one is given: references and peers have none.
+        """
         rows = zip(self.positions.tolist(), self.directions.tolist(), strict=True)
         targets = [Target(str(k), tuple(p), tuple(d)) for k, (p, d) in enumerate(rows)]
         return Problem(
             load_robot("tabletop"),
             targets,
-            options=Options(**options),
+            options=Options(**({"position_margin_m": 0.0} | options)),
         )
 
     @property

@@ -53,7 +53,7 @@ def methods() -> None:
 
 
 def refusals_and_bounds() -> None:
-    """What is refused, certified, uncertain or relaxed goes through kernels of its own."""
+    """What is refused, certified, uncertain, untimed or relaxed goes through kernels of its own."""
     robot = load_robot("tabletop")
     target = home_target(robot)
     several = [
@@ -63,6 +63,7 @@ def refusals_and_bounds() -> None:
     ]
     options = Options(method="ssas", order="independent")
     solve(Problem(robot, several, options=replace(options, certify=True)))
+    solve(Problem(robot, several, options=replace(options, include=("path",))))
     relaxed = replace(options, method="ncos", strike_zone_m=0.01, tilt_tolerance_rad=0.1)
     solve(Problem(robot, several, options=relaxed))
 

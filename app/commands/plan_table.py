@@ -104,7 +104,7 @@ def _row(approach: Mapping[str, Any]) -> tuple[str, ...]:
         _degrees(approach["approach_angle_rad"]),
         f"{approach['effort']:.4f}",
         _degrees(approach["margin_rad"]),
-        _millimetres(approach.get("displacement_margin_m")),
+        _freedom(approach),
         f"{approach['path_deviation_m'] * 1000:.4f}",
     )
 
@@ -137,6 +137,12 @@ def _joint(value: float, unit: str) -> str:
 
 def _millimetres(value_m: float | None) -> str:
     return "" if value_m is None else f"{value_m * 1000:.2f}"
+
+
+def _freedom(approach: Mapping[str, Any]) -> str:
+    """How far the target may move, and whether it should be further [mm]."""
+    told = _millimetres(approach.get("displacement_margin_m"))
+    return f"{told} (short)" if approach.get("margin_short") else told
 
 
 def _degrees(angle_rad: float) -> str:

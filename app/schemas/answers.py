@@ -199,6 +199,14 @@ class ApproachAnswer(BaseModel):
         description="how far the target may move, in any direction, until the path meets a limit "
         "[m]; absent for an arm without a closed form",
     )
+    position_margin_m: float | MISSING = Field(
+        default=MISSING,
+        description="the largest of the option, its half, quarter, eighth and 0 that some approach "
+        "of the method bears, and this one does [m]; absent if not asked for",
+    )
+    margin_short: bool | MISSING = Field(
+        default=MISSING, description="true where that is below the option; else absent"
+    )
     solver: SolverAnswer = Field(description="what the method did")
     transfer: TransferAnswer | MISSING = Field(
         default=MISSING, description="if included: the motion to this standby"

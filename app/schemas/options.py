@@ -29,6 +29,8 @@ TEXTS: Final[Mapping[str, str]] = MappingProxyType(
         "`standoff_m` [m]; not with `certify`, above 0 with a closed form only",
         "tilt_tolerance_rad": "how far the tool's y axis may lean off the branch [rad]; not with "
         "`certify`, above 0 with a closed form only",
+        "position_margin_m": "how far targets should be free to move, as far as some approach of "
+        "the method allows [m]; above 0 with a closed form only",
         "samples": "how many approach angles `floating_z` tries",
         "seed": "of what is drawn: the search for an order, the starts of a numerical inverse",
         "certify": "whether a proven lower bound is added to each effort; with a closed form only",
@@ -61,6 +63,7 @@ def _late(
 
 def _asked(name: str) -> dict[str, Any]:
     from solver.problem.options import (
+        DEFAULT_POSITION_MARGIN_M,
         FULL_ANSWER,
         FULL_ANSWER_TARGETS,
         MOST_WEIGHT,
@@ -77,6 +80,8 @@ def _asked(name: str) -> dict[str, Any]:
             f"{', '.join(FULL_ANSWER)} up to {FULL_ANSWER_TARGETS} targets, then path"
         }
     default = getattr(Options(), name)
+    if name == "position_margin_m":
+        default = DEFAULT_POSITION_MARGIN_M
     if name in known_values():
         known = ", ".join(known_values()[name])
         return {"description": f"{text}; one of {known} today; default {default}"}
@@ -141,6 +146,7 @@ class ResolvedOptions(BaseModel):
     symmetric_tool: bool = answered("symmetric_tool")
     strike_zone_m: float = answered("strike_zone_m")
     tilt_tolerance_rad: float = answered("tilt_tolerance_rad")
+    position_margin_m: float = answered("position_margin_m")
     samples: int = answered("samples")
     seed: int = answered("seed")
     certify: bool = answered("certify")

@@ -76,6 +76,7 @@ class OptionsBody(StrictBody):
     symmetric_tool: bool | MISSING = asked("symmetric_tool")
     strike_zone_m: float | MISSING = asked("strike_zone_m")
     tilt_tolerance_rad: float | MISSING = asked("tilt_tolerance_rad")
+    position_margin_m: float | MISSING = asked("position_margin_m")
     samples: int | MISSING = asked("samples")
     seed: int | MISSING = asked("seed")
     nlp_backend: str | MISSING = asked("nlp_backend")

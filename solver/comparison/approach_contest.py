@@ -74,8 +74,13 @@ class Answer:
 
 
 def comparable(problem: Problem, **options: Any) -> Problem:
-    """A problem as contests have it: each target on its own, untimed, with options by keyword."""
-    kept: dict[str, Any] = {"order": "independent", "include": ("path",), "certify": False}
+    """A problem as contests have it: each target on its own, untimed, with options by keyword.
+
+    Without `position_margin_m`, which the texts compared with do not have.
+    """
+    kept: dict[str, Any] = {
+        "order": "independent", "include": ("path",), "certify": False, "position_margin_m": 0.0,
+    }  # fmt: skip
     return replace(problem, options=replace(problem.options, **(kept | options)))
 
 

@@ -9,13 +9,17 @@ from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.levels import arcs_at_level
 from solver.problem.effort import posture_effort
 from solver.problem.solution import Reason
 
 
 def solve_as(task: ApproachTask) -> Candidate | Reason:
-    """The middle of the widest arc; ties go to tool side 1, then to the lower branch number."""
-    arcs = task_arcs(task)
+    """The middle of the widest arc; ties go to tool side 1, then to the lower branch number.
+
+    Of arcs that bear the largest level of the task's margins that some arc bears.
+    """
+    arcs = arcs_at_level(task, task_arcs(task))
     if not arcs:
         return diagnose(task)
     widest = max(arcs, key=lambda arc: (arc.upper_rad - arc.lower_rad, arc.tool_side, -arc.branch))

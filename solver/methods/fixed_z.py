@@ -10,7 +10,7 @@ from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import ApproachTask
-from solver.approach.uncertainty.robustness import bears_uncertainty
+from solver.approach.uncertainty.levels import first_at_level
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem.solution import Reason
 from solver.robots.model import Array
@@ -44,11 +44,12 @@ def solve_fixed_z(task: ApproachTask) -> Candidate | Reason:
             (float(efforts[branch_number, 0]), -side, branch_number)
             for branch_number in range(BRANCHES)
             if margins[branch_number, 0] >= 0
-            and bears_uncertainty(flat, angle, side, branch_number)
         ]
-    if not offers:
+    offers.sort()
+    chosen = first_at_level(flat, ((angle, -side, number) for _, side, number in offers))
+    if chosen is None:
         return diagnose(flat, np.array([angle]))
-    cost, negative_side, number = min(offers)
+    cost, negative_side, number = offers[chosen]
     thinning = flat.thinning_joints(angle, -negative_side, number)
     # The swing from b to its part in the plane also takes the turned-back x axis to the x axis.
     reported = _angle_forward(task, _swing_back(branch, flat.frame.branch, _FORWARD))

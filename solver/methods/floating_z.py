@@ -5,7 +5,7 @@ from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import ApproachTask
-from solver.approach.uncertainty.robustness import bears_uncertainty
+from solver.approach.uncertainty.levels import first_at_level
 from solver.problem.solution import Reason
 
 
@@ -27,8 +27,10 @@ def solve_floating_z(task: ApproachTask, phase_rad: float = 0.0) -> Candidate | 
         for branch, k in zip(*(margins >= 0).nonzero(), strict=True):
             angle = signed_angle(float(angles[k]))
             offers.append((float(efforts[branch, k]), abs(angle), -side, int(branch), angle))
-    for cost, _, negative_side, branch, angle in sorted(offers):
-        if bears_uncertainty(task, angle, -negative_side, branch):
-            thinning = task.thinning_joints(angle, -negative_side, branch)
-            return Candidate(angle, -negative_side, branch, thinning, cost, n, "best_of_samples")
-    return diagnose(task, angles)
+    offers.sort()
+    chosen = first_at_level(task, ((angle, -side, branch) for _, _, side, branch, angle in offers))
+    if chosen is None:
+        return diagnose(task, angles)
+    cost, _, negative_side, branch, angle = offers[chosen]
+    thinning = task.thinning_joints(angle, -negative_side, branch)
+    return Candidate(angle, -negative_side, branch, thinning, cost, n, "best_of_samples")

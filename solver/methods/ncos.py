@@ -12,6 +12,7 @@ from solver.approach.optimum.on_arcs import ArcOptimum, best_on_arcs
 from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.levels import first_at_level
 from solver.kinematics.families import has_closed_form, rail_of
 from solver.methods.candidates import at_angle
 from solver.methods.coupling import Coupling
@@ -64,9 +65,15 @@ def improved(
     arc = warm_start.arc
     angle = min(max(float(result.x[2 * len(task.robot.joints)]), arc.lower_rad), arc.upper_rad)
     found = _at_angle(task, warm_start, angle)
-    if coupling.cost(found) > coupling.cost(kept):
+    if coupling.cost(found) > coupling.cost(kept) or _bears_less(task, found, kept):
         return _told(kept, result.iterations, AS_GOOD)
     return _told(found, result.iterations, SOLVED)
+
+
+def _bears_less(task: ApproachTask, found: Candidate, kept: Candidate) -> bool:
+    """Whether one approach bears a smaller level of the task's margins than another."""
+    places = [(one.approach_angle_rad, one.tool_side, one.branch or 0) for one in (found, kept)]
+    return first_at_level(task, places) != 0
 
 
 def solve_on_arc(

@@ -68,7 +68,7 @@ def _option_faults(options: Options, joints: int) -> Iterable[Fault]:
             yield Fault(("options", name), detail)
     for name, (lowest, highest) in RANGES.items():
         value = getattr(options, name)
-        if not lowest <= value <= highest:
+        if value is not None and not lowest <= value <= highest:
             yield Fault(("options", name), f"must be between {lowest:g} and {highest:g}")
     if options.standoff_m < options.strike_zone_m <= RANGES["strike_zone_m"][1]:
         # Or the target would be between the forks at standby already.
@@ -100,8 +100,8 @@ def _closed_form_faults(
     """What only an arm with a closed form, and not on a rail, can have."""
     asked: list[tuple[str | int, ...]] = [
         ("options", name)
-        for name in ("strike_zone_m", "tilt_tolerance_rad")
-        if getattr(options, name) != 0.0
+        for name in ("strike_zone_m", "tilt_tolerance_rad", "position_margin_m")
+        if getattr(options, name)
     ]
     uncertain = [
         ("targets", k, "position_std_m")

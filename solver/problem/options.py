@@ -18,6 +18,8 @@ FULL_ANSWER: Final = ("path", "transfer", "trajectory")
 INCLUDES: Final = (*FULL_ANSWER, "arcs")
 FULL_ANSWER_TARGETS: Final = 50
 MOST_WEIGHT: Final = 1e6
+DEFAULT_POSITION_MARGIN_M: Final = 0.001
+"""With a closed form; without one it is 0."""
 
 # Ranges outside which an option makes no sense: (lowest, highest), both allowed.
 RANGES: Final[dict[str, tuple[float, float]]] = {
@@ -30,6 +32,7 @@ RANGES: Final[dict[str, tuple[float, float]]] = {
     "seed": (0, 2**63 - 1),
     "strike_zone_m": (0.0, 0.5),
     "tilt_tolerance_rad": (0.0, 0.8),
+    "position_margin_m": (0.0, 0.05),
 }
 
 
@@ -50,6 +53,7 @@ class Options:
     symmetric_tool: bool = False
     strike_zone_m: float = 0.0
     tilt_tolerance_rad: float = 0.0
+    position_margin_m: float | None = None
     samples: int = 50
     seed: int = 0
     certify: bool = False

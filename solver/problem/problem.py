@@ -11,9 +11,15 @@ from typing import Any
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.transforms import NamedFrame
+from solver.kinematics.families import has_closed_form
 from solver.kinematics.torque_weights import torque_weights
 from solver.problem.checks import problem_faults
-from solver.problem.options import FULL_ANSWER, FULL_ANSWER_TARGETS, Options
+from solver.problem.options import (
+    DEFAULT_POSITION_MARGIN_M,
+    FULL_ANSWER,
+    FULL_ANSWER_TARGETS,
+    Options,
+)
 from solver.problem.targets import Target
 from solver.robots.model import Robot, Tool
 
@@ -95,6 +101,9 @@ def _resolved(options: Options, problem: Problem) -> Options:
         include = FULL_ANSWER if len(problem.targets) <= FULL_ANSWER_TARGETS else ("path",)
     values: dict[str, Any] = {entry.name: getattr(options, entry.name) for entry in fields(Options)}
     values["include"] = tuple(include)
+    if options.position_margin_m is None:
+        closed_form = has_closed_form(problem.robot, problem.mounted_tool)
+        values["position_margin_m"] = DEFAULT_POSITION_MARGIN_M if closed_form else 0.0
     if options.joint_weights is not None:
         values["joint_weights"] = tuple(float(weight) for weight in options.joint_weights)
     return Options(**values)

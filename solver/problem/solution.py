@@ -162,6 +162,9 @@ class Approach:
         displacement_margin_m: how far the target may move, in any direction, until a row of the
             path meets a limit, with its orientation and branch kept; limits less the margin asked
             for, the reach, and the straight wrist.
+        position_margin_m: the largest part of the option's margin that some approach of the method
+            bears; this one does.
+        margin_short: True where that is less than the whole of it.
         arcs: if asked for, the feasible arcs of the task without relaxations; may be empty.
     """
 
@@ -182,6 +185,8 @@ class Approach:
     lower_bound: float | None = None
     margin_rad: float | None = None
     displacement_margin_m: float | None = None
+    position_margin_m: float | None = None
+    margin_short: bool | None = None
     transfer: Transfer | None = None
     trajectory: Trajectory | None = None
     arcs: tuple[Arc, ...] | None = None

@@ -13,6 +13,7 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import ApproachTask, approach_task
+from solver.approach.uncertainty.levels import arcs_at_level
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
 from solver.problem.retreats import looked_at_retreats
@@ -68,6 +69,7 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
 
     Limits hold between the rows of every cut-in: a posture that breaks one becomes a row of its
     target, whose arcs are found anew, and the approaches of the batch, in the same order, too.
+    Arcs are those parts that bear the largest level of the task's margins that some part bears.
 
     Args:
         problem: with order "given" or "optimal".
@@ -80,6 +82,7 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
         arcs = [found[target.id] for target in problem.targets]
     else:
         arcs = [tuple(arcs_of(task)) for task in tasks]
+    arcs = [arcs_at_level(task, own) for task, own in zip(tasks, arcs, strict=True)]
     order = [k for k in range(len(tasks)) if arcs[k]]
     if problem.options.order == "optimal":
         order = _chosen_order(problem, tasks, numbers, arcs, order)
@@ -102,7 +105,7 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
         for position, retreat in missing.items():
             k = order[position]
             tasks[k] = tasks[k].with_retreat(retreat)
-            arcs[k] = tuple(arcs_of(tasks[k]))
+            arcs[k] = arcs_at_level(tasks[k], arcs_of(tasks[k]))
     return stops
 
 

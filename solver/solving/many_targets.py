@@ -1,4 +1,4 @@
-"""Many targets planned together, without a loop in Python: exact ones, without timed motion.
+"""Many targets planned together, without a loop in Python and without timed motion.
 
 What cannot be vouched for here is left to `solver.solving.one_target`: a batch only ever saves
 time.
@@ -10,10 +10,18 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.optimum.batch import Optima, chosen_paths, closed_form_optima, finer_paths
+from solver.approach.optimum.batch import (
+    Optima,
+    chosen_paths,
+    closed_form_optima,
+    finer_paths,
+    raised_optima,
+)
 from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.packing import packed_targets
+from solver.approach.uncertainty.levels import margin_levels
+from solver.approach.uncertainty.robustness import displacement_margins
 from solver.kinematics.families import has_closed_form, rail_of
 from solver.problem.problem import Problem
 from solver.problem.solution import Approach, SolverReport
@@ -49,23 +57,24 @@ def plan_stops(
         stops: neighbours in a batch planned as one, whose limits hold between rows.
         reference: the standby posture before the first, shape (6,) [rad].
     """
-    together = [stop for stop in stops if not stop.task.target.position_std_m]
-    if len(together) < len(stops) or not stops:
+    if not stops:
         return {}
     targets = [stop.task.target for stop in stops]
     positions, directions = _vectors(targets)
     numbers = packed_targets(problem, positions, directions, np.asarray(problem.start))
     angles = np.array([stop.angle_rad for stop in stops])
     paths = chosen_paths(problem, numbers, [stop.arc for stop in stops], angles).joints
+    branches = np.array([stop.arc.branch for stop in stops])
     proposed = ProposedPaths(
         target_ids=[target.id for target in targets],
         positions=positions,
         directions=directions,
         angles_rad=np.array([stop.candidate.approach_angle_rad for stop in stops]),
         tool_sides=np.array([stop.arc.tool_side for stop in stops]),
-        branches=np.array([stop.arc.branch for stop in stops]),
+        branches=branches,
         paths=paths,
         references=np.concatenate(([np.asarray(reference)], paths[:-1, 0])),
+        displacement_margins_m=_margins(problem, branches, paths),
     )
     reports = [
         SolverReport(METHOD, 0.0, stop.candidate.iterations, stop.candidate.status)
@@ -85,9 +94,8 @@ def plan_many(problem: Problem, targets: Sequence[Target]) -> dict[str, Approach
         targets: some of its targets.
     """
     planned: dict[str, Approach] = {}
-    exact = [target for target in targets if not target.position_std_m]
-    for first in range(0, len(exact), BATCH_PART):
-        part = exact[first : first + BATCH_PART]
+    for first in range(0, len(targets), BATCH_PART):
+        part = targets[first : first + BATCH_PART]
         started = time.perf_counter()
         proposed, refined = _proposed(problem, part)
         elapsed_s = (time.perf_counter() - started) / len(part)
@@ -100,6 +108,11 @@ def _proposed(problem: Problem, targets: Sequence[Target]) -> tuple[ProposedPath
     """Approaches of the targets that have one, and how many cells each took."""
     positions, directions = _vectors(targets)
     optima = closed_form_optima(problem, positions, directions, np.asarray(problem.start))
+    levels = [margin_levels(problem.options, target) for target in targets]
+    if max(map(max, levels)) > 0.0:
+        optima, margins = raised_optima(problem, positions, directions, levels, optima)
+    else:
+        margins = _margins(problem, optima.branches, optima.paths)
     leaves = _leave_between_rows(problem, positions, directions, optima)
     kept = np.flatnonzero((optima.branches != NO_BRANCH) & ~leaves)
     proposed = ProposedPaths(
@@ -111,8 +124,22 @@ def _proposed(problem: Problem, targets: Sequence[Target]) -> tuple[ProposedPath
         branches=optima.branches[kept],
         paths=optima.paths[kept],
         references=np.broadcast_to(np.asarray(problem.start), (len(kept), 6)),
+        displacement_margins_m=margins[kept],
     )
     return proposed, optima.refined[kept].tolist()
+
+
+def _margins(problem: Problem, branches: NDArray[np.int64], paths: Array) -> Array:
+    """How far n targets may move, shape (n,) [m]; not a number where there is no cut-in."""
+    margins, known = np.full(len(paths), np.nan), branches != NO_BRANCH
+    margins[known] = displacement_margins(
+        problem.robot,
+        problem.mounted_tool,
+        problem.options,
+        branches[known],
+        np.ascontiguousarray(paths[known, -1]),
+    )
+    return margins
 
 
 def _leave_between_rows(

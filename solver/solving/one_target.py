@@ -16,9 +16,8 @@ from solver.problem.solution import INFEASIBLE, PLANNED, Approach, Reason, Solve
 from solver.problem.targets import Target
 from solver.sequencing.programmed import programmed
 from solver.sequencing.sequence import Stop
-from solver.solving.proposal import propose
+from solver.solving.proposal import judged, propose
 from solver.tolerances import EXCHANGE_ROUNDS
-from solver.verification.verify import judge
 
 
 def plan_target(
@@ -55,16 +54,16 @@ def plan_target(
         report = SolverReport(method, elapsed, 0, outcome.code)
         return Approach(target.id, INFEASIBLE, report, reason=outcome, arcs=arcs)
     report = SolverReport(method, elapsed, outcome.iterations, outcome.status)
-    judged = (
-        _judged(problem, task, candidate, reference, report)
+    offers = (
+        _planned(problem, task, candidate, reference, report)
         for candidate in (outcome, *outcome.others)
     )
-    first = next(judged)
-    approach = first if first.status == PLANNED else next(filter(_is_planned, judged), first)
+    first = next(offers)
+    approach = first if first.status == PLANNED else next(filter(_is_planned, offers), first)
     return replace(approach, arcs=arcs)
 
 
-def _judged(
+def _planned(
     problem: Problem,
     task: ApproachTask,
     candidate: Candidate,
@@ -76,7 +75,7 @@ def _judged(
     if problem.options.certify:
         bound = certify_task(task, approach.effort).lower_bound
         approach = replace(approach, lower_bound=bound)
-    return judge(problem, approach, reference)
+    return judged(problem, approach, reference)
 
 
 def _is_planned(approach: Approach) -> bool:

@@ -1,22 +1,25 @@
 """From a candidate and its cut-in to a whole approach with timed motion, for the verifier."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from solver.approach.cut_in.cut_in import CutIn
 from solver.approach.task.candidate import Candidate
+from solver.approach.uncertainty.levels import told_level
 from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.motion.timing import TimedRows, time_joint_line
 from solver.motion.transfers.joint_line import joint_line
 from solver.problem.effort import posture_effort
 from solver.problem.problem import Problem
-from solver.problem.solution import Approach, Segment, SolverReport, Trajectory
+from solver.problem.solution import PLANNED, Approach, Segment, SolverReport, Trajectory
 from solver.problem.targets import Target
 from solver.robots.model import Array
+from solver.solving.tolerances import CLAIM_HALVINGS
 from solver.tolerances import TRAJECTORY_STEP_S
 from solver.verification.motion_residuals import cut_in_margin
-from solver.verification.verify import thinning_placement
+from solver.verification.verify import judge, thinning_placement, verify
 
 PROPOSED = "proposed"
 
@@ -37,7 +40,8 @@ def propose(
         transfer = joint_line(problem.robot, start, standby)
         trajectory = _trajectory(problem, start, cut_in.motion)
     used = thinning_placement(problem, target, candidate.tool_side, thinning)
-    options = problem.options
+    options, room = problem.options, _displacement_margin(problem, candidate, cut_in)
+    level, short = told_level(options, target, room)
     return Approach(
         target_id=target.id,
         status=PROPOSED,
@@ -53,10 +57,35 @@ def propose(
         path_deviation_m=cut_in.deviation_m,
         effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
         margin_rad=cut_in_margin(problem, cut_in.path_joints, cut_in.rows),
-        displacement_margin_m=_displacement_margin(problem, candidate, cut_in),
+        displacement_margin_m=room,
+        position_margin_m=level,
+        margin_short=short,
         transfer=transfer,
         trajectory=trajectory,
     )
+
+
+def judged(problem: Problem, approach: Approach, reference: Sequence[float]) -> Approach:
+    """What the verifier says of an approach; a displacement margin that it refutes is halved.
+
+    The search for the nearest limit is local, and far from the posture it may end at another one.
+    """
+    verdict = judge(problem, approach, reference)
+    for halvings in range(CLAIM_HALVINGS + 1):
+        claim = approach.displacement_margin_m
+        if verdict.status == PLANNED or not claim:
+            break
+        failures = verify(problem, approach, reference).failures
+        if [residual.name for residual in failures] != ["displacement_margin_claim_m"]:
+            break
+        less = claim / 2 if halvings < CLAIM_HALVINGS else 0.0
+        target = problem.targets_by_id[approach.target_id]
+        level, short = told_level(problem.options, target, less)
+        approach = replace(
+            approach, displacement_margin_m=less, position_margin_m=level, margin_short=short
+        )
+        verdict = judge(problem, approach, reference)
+    return verdict
 
 
 def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) -> float | None:

@@ -19,9 +19,8 @@ from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.problem.targets import Target
 from solver.robots.model import Array
-from solver.solving.proposal import propose
+from solver.solving.proposal import judged, propose
 from solver.tolerances import SAME_POSTURE_RAD
-from solver.verification.verify import judge
 
 BRANCHES = range(8)
 MOTION = ("path", "transfer", "trajectory")
@@ -84,7 +83,7 @@ def _retimed(
     cut_in = build_cut_in(task, candidate)
     if not _same(choice.standby_joints, cut_in.path_joints[0]):
         raise RetimingFailed(target.id, "has another standby posture than it had")
-    approach = judge(
+    approach = judged(
         problem, propose(problem, target, candidate, cut_in, reference, report), reference
     )
     if approach.reason is not None:

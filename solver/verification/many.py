@@ -1,7 +1,7 @@
 """The verifier for many cut-ins at once, without timed motion.
 
-Nobody claims efforts, margins or deviations here: the verifier measures them from the rows, and
-what it measured is the answer.
+Nobody claims efforts, deviations or distances to limits here: the verifier measures them from the
+rows, and what it measured is the answer. How far targets may move is claimed, and tried out.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from solver.approach.cut_in.cut_in import line_deviations, many_retreat_rows
 from solver.approach.task.frame import approach_frames
-from solver.approach.uncertainty.robustness import displacement_margins
+from solver.approach.uncertainty.levels import told_level
+from solver.approach.uncertainty.robustness import needed_margin
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.robots.model import Array
@@ -21,6 +22,7 @@ from solver.verification.path_residuals import (
     ClaimedPaths,
     branch_residuals,
     deviation_residuals,
+    displacement_residuals,
     efforts_between,
     margin_residuals,
     path_residuals,
@@ -30,7 +32,7 @@ from solver.verification.path_residuals import (
 
 @dataclass(frozen=True)
 class ProposedPaths:
-    """Approaches to n exact targets of a problem.
+    """Approaches to n targets of a problem.
 
     Attributes:
         target_ids: whose.
@@ -41,6 +43,7 @@ class ProposedPaths:
         branches: 0 to 7, shape (n,).
         paths: the cut-ins, standby first, shape (n, path_points, 6) [rad].
         references: postures from which efforts count, shape (n, 6) [rad].
+        displacement_margins_m: how far each target may move, as it is claimed, shape (n,) [m].
     """
 
     target_ids: Sequence[str]
@@ -51,6 +54,7 @@ class ProposedPaths:
     branches: NDArray[np.int64]
     paths: Array
     references: Array
+    displacement_margins_m: Array
 
 
 def judge_many(
@@ -65,19 +69,21 @@ def judge_many(
     """
     if not proposed.target_ids:
         return {}
-    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
+    options = problem.options
     claimed = _claimed(proposed)
     standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
     deviations, margins = _as_executed(problem, proposed.branches, claimed)
+    room, targets = proposed.displacement_margins_m, problem.targets_by_id
+    needed = np.array([needed_margin(targets[target_id]) for target_id in proposed.target_ids])
     residuals = (
         *path_residuals(problem, claimed, standby, thinning),
         *branch_residuals(problem, claimed, proposed.branches),
         *deviation_residuals(problem, deviations, deviations),
         *margin_residuals(problem, claimed, margins, margins),
+        *displacement_residuals(problem, claimed, proposed.branches, room, needed),
     )
     accepted = np.logical_and.reduce([residual.accepted for residual in residuals])
     accepted &= np.isin(proposed.tool_sides, (1, -1) if options.symmetric_tool else (1,))
-    room = displacement_margins(robot, tool, options, proposed.branches, thinning)
     efforts = efforts_between(problem, thinning, proposed.references)
     columns = zip(
         proposed.target_ids,
@@ -93,6 +99,10 @@ def judge_many(
         accepted.tolist(),
         strict=True,
     )
+    levels = {
+        target_id: told_level(options, targets[target_id], margin)
+        for target_id, margin in zip(proposed.target_ids, room.tolist(), strict=True)
+    }
     return {
         target_id: Approach(
             target_id=target_id,
@@ -108,6 +118,8 @@ def judge_many(
             effort=effort,
             margin_rad=margin,
             displacement_margin_m=displacement,
+            position_margin_m=levels[target_id][0],
+            margin_short=levels[target_id][1],
         )
         for (
             target_id, report, angle, side, branch, path, deviation, effort, margin, displacement,

@@ -25,7 +25,9 @@ from solver.tolerances import (
     SAME_BRANCH_RAD,
     SAME_POSTURE_RAD,
 )
+from solver.verification.displacement import displacement_overshoots
 from solver.verification.joint_rates import fastest_rates
+from solver.verification.tolerances import DISPLACED_ERROR_M
 from solver.verification.verdict import Residual
 
 
@@ -148,10 +150,21 @@ def margin_residuals(
     yield Residuals("limit_excess_rad", excess, LIMIT_EXCESS_RAD)
 
 
-def displacement_residuals(margins: Array, claims: Array, needed: Array) -> Iterator[Residuals]:
-    """How far the targets may move, what is claimed and what they need, shape (n,) each [m]."""
-    yield Residuals("displacement_margin_claim_m", np.abs(margins - claims), POSITION_ERROR_M)
-    yield Residuals("uncertainty_excess_m", needed - margins, POSITION_ERROR_M)
+def displacement_residuals(
+    problem: Problem,
+    claimed: ClaimedPaths,
+    branches: NDArray[np.int64],
+    claims: Array,
+    needed: Array,
+) -> Iterator[Residuals]:
+    """How far the targets may move, as it is claimed, and what they need, shape (n,) each [m].
+
+    Only a claim that is too large is refused: one that is too small promises nothing untrue.
+    """
+    beyond = displacement_overshoots(problem, branches, claimed.paths, claims)
+    yield Residuals("displacement_margin_claim_m", beyond, DISPLACED_ERROR_M)
+    yield Residuals("displacement_margin_negative_m", -claims, 0.0)
+    yield Residuals("uncertainty_excess_m", needed - claims, POSITION_ERROR_M)
 
 
 def _longest(vectors: Array) -> Array:

@@ -19,3 +19,32 @@ where it is at one point it turns by 0.4 rad or more within 3 mm."""
 
 RATE_ZOOMS: Final = 2
 """How often the place of the fastest rate is closed in on, fiftyfold each: 0.3 mm to 0.1 um."""
+
+DISPLACED_SPACING_M: Final = 0.01
+"""About how far apart rows are at which it is tried how far a target may move [m]: all rows have
+one orientation, so what stops one stops those beside it no more than their distance later."""
+
+DISPLACED_LIMITS: Final = 4
+"""Limits, nearest to first order, towards which a target is moved as far as is claimed."""
+
+DISPLACED_STEP_M: Final = 1e-7
+"""Step of the differences that slopes are taken from [m]: good to 1e-7 where joints turn slowly."""
+
+LEAST_SLOPE: Final = 1e-12
+"""What a slope that may be zero is raised to before something is divided by it [1/m or 1/m2]: such
+a limit is nowhere near."""
+
+DISPLACED_SHARE: Final = 0.05
+"""Share of a claimed displacement margin that is not tried: around a straight wrist the postures at
+its very end are any, and rows between those tried may be nearer to it by as much."""
+
+DISPLACED_ROUNDS: Final = 2
+"""How often a direction towards a limit, or the way to a straight wrist, is found anew where it led
+to: the second is right to a thousandth within 5 cm."""
+
+DISPLACED_ERROR_M: Final = 1e-5
+"""A claimed displacement margin too large by more is refused [m]: between the rows that it was
+taken from a joint comes nearer to its limit by up to 5e-5 rad."""
+
+STRAIGHT_LEAN: Final = 0.01
+"""Sine of joint 5 below which the way to a straight wrist has come to one."""

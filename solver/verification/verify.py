@@ -14,7 +14,8 @@ from solver.approach.cut_in.cut_in import refined_rows
 from solver.approach.numerical.warm_start import same_side
 from solver.approach.task.frame import approach_frame
 from solver.approach.task.relaxation import Placement, placement, rotation, shortened
-from solver.approach.uncertainty.robustness import needed_margin, path_displacement_margin
+from solver.approach.uncertainty.levels import margin_levels
+from solver.approach.uncertainty.robustness import needed_margin
 from solver.kinematics.families import has_branches
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES
@@ -55,7 +56,13 @@ from solver.verification.path_residuals import (
 )
 from solver.verification.verdict import Residual, Verification
 
-MAY_BE_ABSENT = ("branch", "lower_bound", "displacement_margin_m")
+MAY_BE_ABSENT = (
+    "branch",
+    "lower_bound",
+    "displacement_margin_m",
+    "position_margin_m",
+    "margin_short",
+)
 TIMED_FIELDS = ("transfer", "trajectory")
 
 
@@ -133,6 +140,8 @@ class _Claim:
     effort: float
     margin_rad: float
     displacement_margin_m: float | None
+    position_margin_m: float | None
+    margin_short: bool | None
     transfer: Transfer | None
     trajectory: Trajectory | None
     lower_bound: float | None
@@ -262,12 +271,25 @@ def _displacement_residuals(problem: Problem, target: Target, claim: _Claim) -> 
         # Only an arm without a closed form has neither; `_branch_residuals` checks that it is one.
         yield Residual("displacement_margin_absent", float(claim.branch is not None), 0.0)
         return
-    margin = path_displacement_margin(
-        problem.robot, problem.mounted_tool, problem.options, claim.branch, claim.path_joints[-1]
-    )
-    found, claims = np.array([margin]), np.array([claim.displacement_margin_m])
-    needed = np.array([needed_margin(target)])
-    yield from _single(displacement_residuals(found, claims, needed))
+    claimed, branches = _claimed_path(problem, target, claim), np.array([claim.branch])
+    claims, needed = np.array([claim.displacement_margin_m]), np.array([needed_margin(target)])
+    yield from _single(displacement_residuals(problem, claimed, branches, claims, needed))
+    yield from _level_residuals(problem, target, claim, claim.displacement_margin_m)
+
+
+def _level_residuals(
+    problem: Problem, target: Target, claim: _Claim, margin: float
+) -> Iterator[Residual]:
+    """The level told is one of those to try, borne, and short where it is said to be."""
+    wished, level = problem.options.position_margin_m or 0.0, claim.position_margin_m
+    asked, told = wished > 0.0, level is not None
+    yield Residual("position_margin_absent", float(told != asked), 0.0)
+    short = asked and level is not None and level < wished
+    yield Residual("margin_short", float((claim.margin_short or False) != short), 0.0)
+    if level is not None:
+        levels = (*margin_levels(problem.options, target), 0.0)
+        yield Residual("position_margin_is_level", float(level not in levels), 0.0)
+        yield Residual("position_margin_excess_m", level - margin, POSITION_ERROR_M)
 
 
 def _refined(problem: Problem, claimed: ClaimedPaths, branch: int | None) -> tuple[Array, float]:

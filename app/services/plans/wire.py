@@ -183,6 +183,8 @@ def _approach(approach: Approach, include: frozenset[str]) -> dict[str, Any]:
         lower_bound=_optional(approach.lower_bound),
         margin_rad=_optional(approach.margin_rad),
         displacement_margin_m=_optional(approach.displacement_margin_m),
+        position_margin_m=_optional(approach.position_margin_m),
+        margin_short=approach.margin_short,
         solver={
             "method": solver.method,
             "elapsed_s": _number(solver.elapsed_s),

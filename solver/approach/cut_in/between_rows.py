@@ -6,6 +6,7 @@ from solver.approach.cut_in.tolerances import (
     BETWEEN_ROWS_CUSHION,
     BETWEEN_ROWS_REACH,
     MARGIN_CUSHION,
+    MARGIN_REACH,
 )
 from solver.compiled import kernel
 
@@ -58,7 +59,7 @@ def may_fall_below_zero_between(room):
             if bend <= 0.0:
                 continue
             place = 0.5 - slope / bend
-            if place < -BETWEEN_ROWS_REACH or place > 1.0 + BETWEEN_ROWS_REACH:
+            if place < -MARGIN_REACH or place > 1.0 + MARGIN_REACH:
                 continue
             place = min(max(place, 0.0), 1.0)
             vertex = room[n] + slope * place + bend / 2 * place * (place - 1.0)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.approach.optimum.at_level import raise_margins
 from solver.approach.optimum.batch_search import optimise, paths_of_many
 from solver.approach.task.packed import jump_cosines
 from solver.approach.task.packing import packed_targets
@@ -69,6 +70,45 @@ def closed_form_optima(
         fields = (field[part] for field in found)
         optimise(numbers, retreats, jump_cosines(retreats), sent, *fields)
     return Optima(*found)
+
+
+def raised_optima(
+    problem: Problem,
+    positions: Array,
+    directions: Array,
+    levels: Sequence[tuple[float, ...]],
+    optima: Optima,
+) -> tuple[Optima, Array]:
+    """Optima that bear as much displacement of their targets as some approach does, and how much.
+
+    Args:
+        problem: robot, tool and options.
+        positions: of n targets, shape (n, 3) [m].
+        directions: branch directions of any length, shape (n, 3).
+        levels: displacement margins to try for each target, falling, the last one needed [m].
+        optima: seen from the problem's start, whatever their targets may move.
+
+    Returns:
+        The optima, without a branch where none bears what is needed, and how far each target may
+        move, shape (n,) [m].
+    """
+    retreats, n, most = looked_at_retreats(problem.options), len(positions), max(map(len, levels))
+    numbers = packed_targets(problem, positions, directions, np.asarray(problem.start))
+    angles, sides = optima.angles_rad.copy(), optima.tool_sides.copy()
+    branches, efforts = optima.branches.copy(), optima.efforts.copy()
+    paths, suspicious = optima.paths.copy(), optima.suspicious.copy()
+    margins, moved = np.empty(n), np.empty(n, dtype=np.bool_)
+    table = np.array([(*own, *own[-1:] * (most - len(own))) for own in levels])
+    raise_margins(
+        numbers, retreats, jump_cosines(retreats), table, angles, sides, branches, efforts,
+        margins, moved,
+    )  # fmt: skip
+    which = np.flatnonzero(moved)
+    packed = np.ascontiguousarray(numbers[(1 - sides[which]) // 2, which])
+    found = _paths(packed, branches[which], angles[which], retreats, even_retreats(problem.options))
+    paths[which], suspicious[which] = found.joints, found.suspicious
+    raised = Optima(angles, sides, branches, efforts, paths, suspicious, optima.refined)
+    return raised, margins
 
 
 @dataclass(frozen=True)

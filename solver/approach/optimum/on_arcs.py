@@ -1,5 +1,6 @@
 """The least effort over every feasible arc of one task."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,8 @@ import numpy as np
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.optimum.search import optimum_on_arcs
 from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.levels import arcs_at_level, margin_levels
+from solver.approach.uncertainty.robustness import approach_margin
 from solver.problem.solution import Arc
 
 
@@ -21,8 +24,24 @@ class ArcOptimum:
 
 
 def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:
-    """The least effort over every arc of every branch; None when there is no arc."""
+    """The least effort over every arc of every branch; None when there is no arc.
+
+    Of approaches that bear the largest level of the task's margins that some approach bears.
+    """
     arcs = task_arcs(task)
+    best = least_on_arcs(task, arcs)
+    if best is None:
+        return None
+    level, *lower = margin_levels(task.options, task.target)
+    if lower:
+        margin = approach_margin(task, best.angle_rad, best.arc.tool_side, best.arc.branch)
+        if margin < level:
+            best = least_on_arcs(task, arcs_at_level(task, arcs))
+    return best
+
+
+def least_on_arcs(task: ApproachTask, arcs: Sequence[Arc]) -> ArcOptimum | None:
+    """The least effort on some arcs; None when there is none."""
     packed = [task.packed(side) for side in task.tool_sides]
     chosen, angle, effort, refined = optimum_on_arcs(
         np.stack([side.numbers for side in packed]),

@@ -1,8 +1,6 @@
 """Kernels: how far a target may be moved until the posture planned for it is infeasible.
 
-The distance, in the space of the target's displacements at fixed orientation, to the nearest limit:
-a nearest-point problem for each limit, solved by successive linearisation (the iteration of
-Hasofer, Lind, Rackwitz and Fiessler, known from structural reliability).
+The nearest limit of all rows of its cut-in; limits that are far to first order are left out.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
@@ -13,131 +11,25 @@ import numpy as np
 
 from solver.approach.task.constraints import JOINTS, LIMITS, REACH
 from solver.approach.task.feasibility import tool_axes, trace
+from solver.approach.uncertainty.nearest_limit import (
+    LOWER_5,
+    UPPER_5,
+    behind,
+    first_order,
+    limit_distance,
+    straight_wrist_distance,
+    straight_wrists,
+)
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
 from solver.approach.uncertainty.tolerances import (
     DISPLACEMENT_ROUNDS,
-    DISPLACEMENT_STEP_M,
-    DISPLACEMENT_STEP_RELATIVE,
+    PROBE_ENDS_RAD,
     PROBE_HALVINGS,
     SCREENED_DISTANCES,
     STRAIGHT_WRIST_PROBES,
-    STRAIGHT_WRIST_SINE,
 )
 from solver.compiled import kernel
 from solver.tolerances import LEAST_DIVISOR
-
-_LOWER_5, _UPPER_5 = 2 * 4, 2 * 4 + 1
-"""The limits of joint 5, in whose place a straight wrist may stand."""
-
-
-@kernel
-def limit_distance(g, position, axes, branch, q, kind, limit, delta):
-    """Length of the smallest shift of the tool at which a joint, or the reach, meets its limit [m].
-
-    Args:
-        g: the arm.
-        position: of the tool, shape (3,) [m].
-        axes: its orientation, shape (3, 3).
-        branch: inverse kinematics branch.
-        q: the posture there, shape (6,) [rad].
-        kind: index of the joint; REACH for the reach margin.
-        limit: the joint's limit [rad]; 0 for the reach.
-        delta: where the search starts, a shift inside the reach; written, the shift found, shape
-            (3,) [m].
-    """
-    rates, reach_rates, turn = np.empty((6, 4)), np.empty(4), np.zeros(3)
-    at, new = np.empty(6), np.zeros(3)
-    shifted(g, position, delta, axes, branch, q, at)
-    for _ in range(DISPLACEMENT_ROUNDS):
-        reach = joint_rates(g, at, axes, 0.0, turn, rates, reach_rates)
-        gradient = reach_rates if kind == REACH else rates[kind]
-        missing = limit - (reach if kind == REACH else at[kind])
-        square = 0.0
-        for i in range(3):
-            square += gradient[i] * gradient[i]
-            missing += gradient[i] * delta[i]
-        change, length = 0.0, 0.0
-        for i in range(3):
-            new[i] = gradient[i] * missing / square
-            change += (new[i] - delta[i]) ** 2
-            length += new[i] * new[i]
-        while (
-            shifted(g, position, new, axes, branch, q, at) < 0.0 and change > DISPLACEMENT_STEP_M**2
-        ):
-            change, length = change / 4, 0.0
-            for i in range(3):
-                new[i] = (new[i] + delta[i]) / 2
-                length += new[i] * new[i]
-        delta[:] = new
-        if change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
-            break
-    return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
-
-
-@kernel
-def straight_wrist_distance(g, position, axes, branch, q, delta):
-    """Length of the smallest shift of the tool at which the wrist is straight [m].
-
-    Two equations, sin q5 cos q4 = sin q5 sin q4 = 0: q5 itself is a cone with its tip there, which
-    no linearisation meets. Arguments as for `limit_distance`; delta starts at zero.
-    """
-    rates, reach_rates, at = np.empty((6, 4)), np.empty(4), q.copy()
-    first, second = np.empty(3), np.empty(3)
-    for _ in range(DISPLACEMENT_ROUNDS):
-        joint_rates(g, at, axes, 0.0, axes[:, 1], rates, reach_rates)
-        turn4, turn5 = at[3] + g.offsets[3], at[4] + g.offsets[4]
-        c4, s4, c5, s5 = math.cos(turn4), math.sin(turn4), math.cos(turn5), math.sin(turn5)
-        value1, value2 = -s5 * c4, -s5 * s4
-        m11, m12, m22 = 0.0, 0.0, 0.0
-        for i in range(3):
-            first[i] = c5 * c4 * rates[4, i] - s5 * s4 * rates[3, i]
-            second[i] = c5 * s4 * rates[4, i] + s5 * c4 * rates[3, i]
-            value1 += first[i] * delta[i]
-            value2 += second[i] * delta[i]
-            m11 += first[i] * first[i]
-            m12 += first[i] * second[i]
-            m22 += second[i] * second[i]
-        determinant = max(m11 * m22 - m12 * m12, LEAST_DIVISOR)
-        along = (m22 * value1 - m12 * value2) / determinant
-        across = (m11 * value2 - m12 * value1) / determinant
-        change, length = 0.0, 0.0
-        for i in range(3):
-            new = along * first[i] + across * second[i]
-            change += (new - delta[i]) ** 2
-            length += new * new
-            delta[i] = new
-        reach = shifted(g, position, delta, axes, branch, q, at)
-        near_tip = abs(math.sin(at[4] + g.offsets[4])) < STRAIGHT_WRIST_SINE
-        if reach < 0 or near_tip or change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
-            break
-    return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
-
-
-@kernel
-def first_order(g, lower, upper, q, axes, rates, reach_rates, distances):
-    """Fills the distances at which each limit is met to first order, shape (LIMITS,) [m].
-
-    `lower` and `upper` are those of `branch_limits`. Negative where a limit is broken.
-    """
-    reach = joint_rates(g, q, axes, 0.0, axes[:, 1], rates, reach_rates)
-    for i in range(6):
-        slope = math.sqrt(rates[i, 0] ** 2 + rates[i, 1] ** 2 + rates[i, 2] ** 2)
-        distances[2 * i] = (q[i] - lower[i]) / max(slope, LEAST_DIVISOR)
-        distances[2 * i + 1] = (upper[i] - q[i]) / max(slope, LEAST_DIVISOR)
-    slope = math.sqrt(reach_rates[0] ** 2 + reach_rates[1] ** 2 + reach_rates[2] ** 2)
-    distances[2 * REACH] = reach / max(slope, LEAST_DIVISOR)
-
-
-@kernel
-def branch_limits(g, lower, upper, q, low, high):
-    """Writes the limits with joint 5 kept between the straight wrists around it, shapes (6,).
-
-    On one branch sin q5 keeps its sign: the tool cannot pass a straight wrist without a jump.
-    """
-    low[:], high[:] = lower, upper
-    turned = q[4] + g.offsets[4]
-    below = math.pi * math.floor(turned / math.pi) - g.offsets[4]
-    low[4], high[4] = max(low[4], below), min(high[4], below + math.pi)
 
 
 @kernel
@@ -158,18 +50,16 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
         row; and the joint that is met there, REACH for the reach.
     """
     axes = np.ascontiguousarray(pose[:3, :3])
-    low, high = np.empty(6), np.empty(6)
     rates, reach_rates, distances = np.empty((6, 4)), np.empty(4), np.empty(LIMITS)
     nearest, nearest_row = np.full(LIMITS, np.inf), np.zeros(LIMITS, dtype=np.int64)
     for n in range(len(retreats)):
-        branch_limits(g, lower, upper, rows[n], low, high)
-        first_order(g, low, high, rows[n], axes, rates, reach_rates, distances)
+        first_order(g, lower, upper, rows[n], axes, rates, reach_rates, distances)
         for kind in range(LIMITS):
             if distances[kind] < nearest[kind]:
                 nearest[kind], nearest_row[kind] = distances[kind], n
-    straight = min(nearest[_LOWER_5], nearest[_UPPER_5])
+    straight = min(nearest[LOWER_5], nearest[UPPER_5])
     straight_row = (
-        nearest_row[_LOWER_5] if nearest[_LOWER_5] < nearest[_UPPER_5] else nearest_row[_UPPER_5]
+        nearest_row[LOWER_5] if nearest[LOWER_5] < nearest[UPPER_5] else nearest_row[UPPER_5]
     )
     position, delta, best_delta = np.empty(3), np.empty(3), np.zeros(3)
     best, best_row, best_joint = math.inf, 0, 0
@@ -182,12 +72,12 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
             return 0.0, n, kind // 2
         nearest[kind] = math.inf
         behind(pose, retreats[n], position)
-        branch_limits(g, lower, upper, rows[n], low, high)
         limit = 0.0
         if kind < 2 * JOINTS:
-            limit = high[kind // 2] if kind % 2 else low[kind // 2]
+            limit = upper[kind // 2] if kind % 2 else lower[kind // 2]
         delta[:] = 0.0
-        if (kind == _LOWER_5 and low[4] > lower[4]) or (kind == _UPPER_5 and high[4] < upper[4]):
+        below, above = straight_wrists(g, rows[n])
+        if (kind == LOWER_5 and below > lower[4]) or (kind == UPPER_5 and above < upper[4]):
             length = straight_wrist_distance(g, position, axes, branch, rows[n], delta)
         else:
             length = limit_distance(g, position, axes, branch, rows[n], kind // 2, limit, delta)
@@ -221,13 +111,6 @@ def rows_displacement_margins(g, lower, upper, poses, retreats, branches, paths,
         margins[k], _, _ = rows_displacement_margin(
             g, lower, upper, poses[k], retreats, branches[k], paths[k]
         )
-
-
-@kernel
-def behind(pose, retreat, position):
-    """Writes the tool's place at a retreat behind a pose, shape (3,) [m]."""
-    for i in range(3):
-        position[i] = pose[i, 3] - retreat * pose[i, 2]
 
 
 @kernel
@@ -302,7 +185,9 @@ def beside_straight_wrist(
                     inside = middle
             delta[:] = inside * direction
             length = limit_distance(g, position, axes, branch, rows[n], joint, limit, delta)
-            if length < best:
+            # Beyond the straight wrist the search may end where no limit is.
+            shifted(g, position, delta, axes, branch, rows[n], at)
+            if length < best and abs(at[joint] - limit) <= PROBE_ENDS_RAD:
                 best, best_row, best_joint = length, n, joint
                 best_delta[:] = delta
     return best, best_row, best_joint

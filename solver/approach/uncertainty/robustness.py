@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from solver.approach.task.feasibility import retreat_from_many
 from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
-from solver.approach.uncertainty.displacement import displacement_margin, rows_displacement_margins
-from solver.approach.uncertainty.robust_search import robust_pieces
+from solver.approach.uncertainty.displacement import rows_displacement_margins
+from solver.approach.uncertainty.robust_parts import margin_of_approach, parts_of_arcs
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import wrist_geometry
@@ -37,14 +37,23 @@ def needed_margin(target: Target) -> float:
 def robust_arcs(task: ApproachTask, arcs: Sequence[Arc]) -> tuple[Arc, ...]:
     """The parts of feasible arcs that bear the target's uncertainty; all where it has none."""
     needed = needed_margin(task.target)
-    if needed == 0.0:
-        return tuple(arcs)
-    found: list[Arc] = []
-    for arc in arcs:
-        kernels = task.for_kernels(arc.tool_side)
-        parts, _, _ = robust_pieces(kernels, arc.branch, arc.lower_rad, arc.upper_rad, needed)
-        found += [_part(arc, float(low), float(high)) for low, high in parts]
-    return tuple(found)
+    return tuple(arcs) if needed == 0.0 else arcs_bearing(task, arcs, needed)
+
+
+def arcs_bearing(task: ApproachTask, arcs: Sequence[Arc], margin: float) -> tuple[Arc, ...]:
+    """The parts of feasible arcs that bear a displacement of the target [m]."""
+    packed = [task.packed(side) for side in task.tool_sides]
+    parts = parts_of_arcs(
+        np.stack([side.numbers for side in packed]),
+        packed[0].retreats,
+        packed[0].cos_steps,
+        np.array([task.tool_sides.index(arc.tool_side) for arc in arcs], dtype=np.int64),
+        np.array([arc.branch for arc in arcs], dtype=np.int64),
+        np.array([arc.lower_rad for arc in arcs]),
+        np.array([arc.upper_rad for arc in arcs]),
+        margin,
+    )
+    return tuple(_part(arcs[int(place)], low, high) for place, low, high in parts.tolist())
 
 
 def _part(arc: Arc, low: float, high: float) -> Arc:
@@ -57,14 +66,15 @@ def _part(arc: Arc, low: float, high: float) -> Arc:
     )
 
 
+def approach_margin(task: ApproachTask, angle: float, tool_side: int, branch: int) -> float:
+    """How far the target of a feasible approach may move [m]."""
+    return float(margin_of_approach(task.packed(tool_side), angle, branch))
+
+
 def bears_uncertainty(task: ApproachTask, angle: float, tool_side: int, branch: int) -> bool:
     """Whether an approach stays feasible however uncertain its target is."""
     needed = needed_margin(task.target)
-    if needed == 0.0:
-        return True
-    rows = np.empty((len(task.retreats_m), 6))
-    margin, _, _ = displacement_margin(task.for_kernels(tool_side), angle, branch, rows)
-    return bool(margin >= needed)
+    return needed == 0.0 or approach_margin(task, angle, tool_side, branch) >= needed
 
 
 def path_displacement_margin(

@@ -33,3 +33,33 @@ DISPLACEMENT_STEP_M: Final = 1e-9
 STRAIGHT_WRIST_SINE: Final = 10 * SINGULAR_SINE
 """Sine of joint 5 below which the search for the nearest straight wrist has come to it; nearer,
 rates are no longer those of the posture."""
+
+ROBUST_CELL_RAD: Final = 0.025
+"""Spacing of the angles at which it is looked what an arc bears [rad]: a margin of a millimetre
+comes and goes over some 0.01 rad, a twentieth of a tool of 0.2 m."""
+
+BORNE_EXCESS_M: Final = 1e-8
+"""Excess over what has to be borne at which the end of a robust part is found [m]: a hundredth of
+what the verifier lets pass."""
+
+ROOT_SHARE: Final = 0.01
+"""Share of an interval that each step of the search for such an end takes at least."""
+
+ROOT_STEPS: Final = 60
+"""Steps of that search at most; bisection alone would take thirty. Six are usual."""
+
+EXTREME_STEPS: Final = 14
+"""Steps of a search for a narrow extreme of the margin: 0.05 rad to 1e-4 rad, where the margin
+changes by a hundredth of a millimetre."""
+
+MARGIN_HALVINGS: Final = 3
+"""How often `position_margin_m` is halved for a target that cannot have it: an eighth of a
+millimetre is what a detector's pixel is worth."""
+
+LEVEL_ROUNDING_M: Final = 1e-7
+"""What a displacement margin may be short of a level that it is said to bear [m]: the search for
+the nearest point of a limit ends within 1e-6 of its distance."""
+
+PROBE_ENDS_RAD: Final = 1e-4
+"""How far a joint may be from its limit where a search that began beside a straight wrist says that
+it meets it [rad]: a hundredth of what it turns in a millimetre there."""

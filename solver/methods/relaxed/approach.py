@@ -10,6 +10,8 @@ from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.relaxation import placement
 from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.levels import level_borne, margin_levels
+from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.candidates import at_angle, from_thinning
 from solver.methods.coupling import Coupling
@@ -52,7 +54,7 @@ def between_neighbours(task: ApproachTask, kept: Candidate, coupling: Coupling) 
     """
     points = sorted(
         optima_at(task, *looked_at(task)),
-        key=lambda point: point.effort + coupling.onwards(point.postures[1]),
+        key=lambda point: (-point.level_m, point.effort + coupling.onwards(point.postures[1])),
     )
     offers = [kept, *(_candidate(task, point) for point in points[:POINTS_KEPT])]
     iterations = 0
@@ -60,7 +62,7 @@ def between_neighbours(task: ApproachTask, kept: Candidate, coupling: Coupling) 
         end = programme_from(task, start, coupling.next_thinning)
         iterations += end.iterations
         offers += _on_its_arc(task, start, end)
-    offers.sort(key=coupling.cost)
+    offers.sort(key=lambda offer: (-_level(task, offer), coupling.cost(offer)))
     return replace(offers[0], iterations=iterations, status="solved", others=tuple(offers[1:]))
 
 
@@ -76,7 +78,23 @@ def _point(task: ApproachTask, candidate: Candidate) -> Point:
     rows = retreat_rows(task.robot, task.tool, candidate.thinning_joints, branch, ends)
     pose = forward_kinematics(task.robot, task.tool, rows[-1])
     seen = placement(task.frame, np.asarray(task.target.position_m), candidate.tool_side, pose)
-    return Point(seen, candidate.tool_side, branch, candidate.effort, rows[::-1])
+    level = _level(task, candidate)
+    return Point(seen, candidate.tool_side, branch, candidate.effort, level, rows[::-1])
+
+
+def _level(task: ApproachTask, candidate: Candidate) -> float:
+    """The largest level of the task's margins that a candidate bears [m]; -1 for not even the last.
+
+    What nobody wishes for is not looked at.
+    """
+    levels = margin_levels(task.options, task.target)
+    if levels == (0.0,):
+        return 0.0
+    margin = path_displacement_margin(
+        task.robot, task.tool, task.options, candidate.branch or 0, candidate.thinning_joints
+    )
+    level = level_borne(levels, margin)
+    return -1.0 if level is None else level
 
 
 def _on_its_arc(task: ApproachTask, start: Point, end: ProgrammeEnd) -> list[Candidate]:

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.approach.optimum.batch_search import NO_BRANCH, optimise
-from solver.approach.optimum.on_arcs import best_on_arcs
+from solver.approach.optimum.at_level import raise_margins
+from solver.approach.optimum.batch_search import NO_BRANCH, optimise, paths_of_many
 from solver.approach.task.packed import jump_cosines
 from solver.approach.task.relaxation import Placement, rotation, shortened
 from solver.approach.task.task import ApproachTask
+from solver.approach.uncertainty.levels import level_borne, margin_levels
 from solver.methods.relaxed.descent import descend, write_points
 from solver.methods.relaxed.zones import zone_of
 from solver.problem.retreats import even_retreats
@@ -29,6 +30,7 @@ class Point:
         tool_side: 1 or -1.
         branch: 0 to 7.
         effort: of its thinning posture.
+        level_m: the largest level of the task's margins that it bears [m].
         postures: thinning and standby, shape (2, 6) [rad].
     """
 
@@ -36,22 +38,25 @@ class Point:
     tool_side: int
     branch: int
     effort: float
+    level_m: float
     postures: Array
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """What makes one point better than another: it bears more, then it is cheaper."""
+        return -self.level_m, self.effort
 
 
 def optima_at(task: ApproachTask, strikes_m: Array, swings_rad: Array) -> list[Point]:
     """The approach of least effort at each of n points that has one, in their order.
+
+    Of approaches that bear the largest level of the task's margins that some approach there bears.
 
     Args:
         task: of an arm with a closed form.
         strikes_m: how far the tool centre point is beyond the target, shape (n,) [m].
         swings_rad: rotation vectors, normal to the branch, shape (n, 3) [rad].
     """
-    if task.target.position_std_m:
-        # Arcs that bear an uncertainty are not searched many at a time.
-        points = zip(strikes_m.tolist(), swings_rad, strict=True)
-        found = (_robust_optimum(task, strike, swing) for strike, swing in points)
-        return [point for point in found if point is not None]
     n, ends = len(strikes_m), even_retreats(task.options, 2)
     angles, efforts, rows = np.empty(n), np.empty(n), np.empty((n, 2, 6))
     sides, branches = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
@@ -59,17 +64,31 @@ def optima_at(task: ApproachTask, strikes_m: Array, swings_rad: Array) -> list[P
     fixed = np.empty((len(numbers), n, numbers.shape[1]))
     frame, retreats = task.frame, np.asarray(task.retreats_m)
     write_points(numbers, strikes_m, swings_rad @ frame.outward, swings_rad @ frame.sideways, fixed)
+    steps, suspicious = jump_cosines(retreats), np.empty(n, dtype=np.bool_)
     optimise(
-        fixed, retreats, jump_cosines(retreats), ends,
-        angles, sides, branches, efforts, rows, np.empty(n, dtype=np.bool_),
-        np.empty(n, dtype=np.int64),
+        fixed, retreats, steps, ends,
+        angles, sides, branches, efforts, rows, suspicious, np.empty(n, dtype=np.int64),
     )  # fmt: skip
+    levels, margins = margin_levels(task.options, task.target), np.zeros(n)
+    if levels != (0.0,):
+        moved = np.empty(n, dtype=np.bool_)
+        raise_margins(
+            fixed, retreats, steps, np.tile(levels, (n, 1)),
+            angles, sides, branches, efforts, margins, moved,
+        )  # fmt: skip
+        which = np.flatnonzero(moved)
+        own, again = fixed[(1 - sides[which]) // 2, which], np.empty((len(which), 2, 6))
+        paths_of_many(
+            own, branches[which], angles[which], retreats, steps, ends, again, suspicious[which]
+        )
+        rows[which] = again
     return [
         Point(
             Placement(float(angles[k]), float(strikes_m[k]), swings_rad[k]),
             int(sides[k]),
             int(branches[k]),
             float(efforts[k]),
+            level_borne(levels, float(margins[k])) or 0.0,
             rows[k, ::-1],
         )
         for k in np.flatnonzero(branches != NO_BRANCH).tolist()
@@ -110,18 +129,6 @@ def angle_in(fixed: ApproachTask, task: ApproachTask, seen: Placement) -> float:
     """The approach angle of a fixed task at which its tool stands as placed in the relaxed one."""
     z = rotation(seen.swing_rad) @ task.frame.direction(seen.approach_angle_rad)
     return float(np.arctan2(z @ fixed.frame.sideways, z @ fixed.frame.outward))
-
-
-def _robust_optimum(task: ApproachTask, strike_m: float, swing_rad: Array) -> Point | None:
-    fixed = fixed_task(task, strike_m, swing_rad)
-    best = best_on_arcs(fixed)
-    if best is None:
-        return None
-    side, branch = best.arc.tool_side, best.arc.branch
-    rows = fixed.postures(best.angle_rad, side, branch, even_retreats(task.options, 2))
-    z = rotation(swing_rad).T @ fixed.frame.direction(best.angle_rad)
-    angle = float(np.arctan2(z @ task.frame.sideways, z @ task.frame.outward))
-    return Point(Placement(angle, strike_m, swing_rad), side, branch, best.effort, rows[::-1])
 
 
 def _numbers(task: ApproachTask) -> Array:

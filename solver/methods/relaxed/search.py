@@ -5,7 +5,8 @@ what its smaller neighbours offer and the points of the closed form inside it. F
 the closed form's optimum is descended, which finds the valley; from there the programme goes to its
 bottom, where the closed form is asked again. Where that says otherwise, as the programme does not
 know all that a cut-in has to hold, the descent goes on. So a larger zone on the ladder is never
-dearer than a smaller one.
+dearer than a smaller one, at the level that both bear: what a target may move counts first, and
+neither the descent nor the programme looks at it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -32,7 +33,7 @@ class Offers:
     """What was found in a zone.
 
     Attributes:
-        points: the cheapest first; none where nothing was found.
+        points: the best first; none where nothing was found.
         iterations: of the programmes, over all zones.
         status: how the programme from the best start ended; empty where none was needed.
     """
@@ -43,7 +44,7 @@ class Offers:
 
 
 def relaxed_offers(task: ApproachTask) -> Offers:
-    """The approaches of least effort found in a task's zone, different ones, cheapest first."""
+    """The approaches of least effort found in a task's zone, different ones, the best first."""
     strikes, tilts = strike_rungs(task.options), tilt_rungs(task.options)
     points = optima_at(task, *looked_at(task)) or _restored(task)
     if not points:
@@ -64,18 +65,18 @@ def relaxed_offers(task: ApproachTask) -> Offers:
 def _zone_offers(task: ApproachTask, known: Sequence[Point]) -> Offers:
     """A zone's offers: what is known inside it, and what a descent and the programme make of it."""
     if not task.options.relaxed:
-        return Offers(_cheapest(known))
+        return Offers(_best(known))
     points = known or _restored(task)
     if not points:
         return Offers(())
-    below = descended(task, min(points, key=_effort).placement, FIRST_LOOKS)
-    start = min([*below, *points], key=_effort)
+    below = descended(task, min(points, key=_rank).placement, FIRST_LOOKS)
+    start = min([*below, *points], key=_rank)
     end = programme_from(task, start)
     at_end = optimum_at(task, end.placement.strike_m, end.placement.swing_rad)
-    best = min([*at_end, start], key=_effort)
+    best = min([*at_end, start], key=_rank)
     if best.effort > end.effort * (1 + AGREED_EFFORT):
         at_end += descended(task, best.placement, MORE_LOOKS)
-    return Offers(_cheapest([*at_end, *below, *points]), end.iterations, end.status)
+    return Offers(_best([*at_end, *below, *points]), end.iterations, end.status)
 
 
 def _restored(task: ApproachTask) -> list[Point]:
@@ -93,13 +94,13 @@ def _lies_in(task: ApproachTask, point: Point) -> bool:
     return bool(seen.strike_m <= strike_m and seen.tilt_rad <= tilt_rad + TILT_ROUNDING_RAD)
 
 
-def _effort(point: Point) -> float:
-    return point.effort
+def _rank(point: Point) -> tuple[float, float]:
+    return point.rank
 
 
-def _cheapest(points: Iterable[Point]) -> tuple[Point, ...]:
-    """The cheapest points, one for each tool side and branch, cheapest first."""
+def _best(points: Iterable[Point]) -> tuple[Point, ...]:
+    """The best points, one for each tool side and branch, the best first."""
     kept: dict[tuple[int, int], Point] = {}
-    for point in sorted(points, key=_effort):
+    for point in sorted(points, key=_rank):
         kept.setdefault((point.tool_side, point.branch), point)
     return tuple(kept.values())[:POINTS_KEPT]

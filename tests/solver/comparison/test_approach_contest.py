@@ -63,7 +63,7 @@ def test_better_methods_are_never_dearer(tabletop: Robot, options: Options) -> N
 
 def test_accounts_are_those_of_the_plan(tabletop: Robot) -> None:
     """Contest and planner: the same verdicts, efforts and margins."""
-    problem = Problem(tabletop, random_targets(42, 12))
+    problem = comparable(Problem(tabletop, random_targets(42, 12)))
     found = accounts(contest_of(problem))
     codes = set()
     for name in METHODS:

@@ -9,7 +9,9 @@ from tests.solver.problems import random_targets
 
 @pytest.mark.parametrize("symmetric", [False, True])
 def test_middle_of_the_widest_arc(tabletop: Robot, symmetric: bool) -> None:
-    options = Options(method="as", order="independent", symmetric_tool=symmetric)
+    options = Options(
+        method="as", order="independent", symmetric_tool=symmetric, position_margin_m=0.0
+    )
     problem = Problem(tabletop, random_targets(seed=22, count=80), options=options)
     planned = 0
     for target, approach in zip(problem.targets, solve(problem).approaches, strict=True):

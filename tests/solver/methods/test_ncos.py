@@ -139,7 +139,7 @@ def test_relaxed_is_never_dearer_and_stays_inside(
     tabletop: Robot, options: dict[str, object]
 ) -> None:
     cheaper = 0
-    for task in tasks(tabletop, 23, 10, **options):
+    for task in tasks(tabletop, 23, 10, position_margin_m=0.0, **options):
         unrelaxed, relaxed = solve_ssas(task), solve_ncos(task)
         assert isinstance(unrelaxed, Candidate)
         assert isinstance(relaxed, Candidate)
@@ -204,7 +204,7 @@ def test_the_next_target_is_looked_ahead_to(tabletop: Robot) -> None:
     """The coupled cost is that of thinning and of the travel onwards, and is never dearer."""
     for options in ({}, {"norm": "l2"}, RELAXED):
         changed = 0
-        for task in tasks(tabletop, 26, 6, **options):
+        for task in tasks(tabletop, 26, 6, position_margin_m=0.0, **options):
             alone, warm_start = solve_ncos(task), best_on_arcs(task)
             assert isinstance(alone, Candidate)
             assert warm_start is not None

@@ -86,7 +86,7 @@ def test_every_reason_code_of_the_first_set_occurs(tabletop: Robot) -> None:
 
 def test_limits_hold_between_rows_too(tabletop: Robot) -> None:
     """With both ends alone as rows some cut-ins break a limit in the middle; answers never do."""
-    options = Options(method="ssas", order="independent", path_points=2)
+    options = Options(method="ssas", order="independent", path_points=2, position_margin_m=0.0)
     problem = Problem(tabletop, random_targets(seed=44, count=300), options=options)
     broken = 0
     for target in problem.targets:

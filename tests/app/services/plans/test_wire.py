@@ -5,6 +5,7 @@ from typing import Any
 
 from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
 from solver import Options, feasible_arcs, solve
+from solver.problem.options import DEFAULT_POSITION_MARGIN_M
 
 Body = dict[str, Any]
 
@@ -47,7 +48,8 @@ def test_options_are_all_known_to_the_solver(request_body: Body) -> None:
         "method": "ssas", "order": "independent", "norm": "l2", "weights": "uniform",
         "joint_weights": [1, 2, 3, 4, 5, 6], "standoff_m": 0.03, "path_points": 11,
         "straightness_m": 0.001, "dwell_s": 1, "limit_margin_rad": 0.01, "symmetric_tool": True,
-        "strike_zone_m": 0.01, "tilt_tolerance_rad": 0.1, "samples": 20, "seed": 3,
+        "strike_zone_m": 0.01, "tilt_tolerance_rad": 0.1, "position_margin_m": 0.002,
+        "samples": 20, "seed": 3,
         "certify": False, "nlp_backend": "ipopt", "qp_solver": "osqp", "include": ["path"],
     }  # fmt: skip
     request_body["options"] = given
@@ -56,6 +58,27 @@ def test_options_are_all_known_to_the_solver(request_body: Body) -> None:
         **given, "joint_weights": (1, 2, 3, 4, 5, 6), "include": ("path",),
     }  # fmt: skip
     assert set(given) == set(Options.__dataclass_fields__)
+
+
+def test_the_margin_is_told_where_it_is_asked_for(request_body: Body) -> None:
+    told = []
+    for margin_m in (None, 0.0, 0.05):
+        options = {"method": "ssas", "include": ["path"]}
+        request_body["options"] = (
+            options if margin_m is None else {**options, "position_margin_m": margin_m}
+        )
+        problem = problem_from_wire(parse_request(json.dumps(request_body).encode()))
+        answer = plan_to_wire(solve(problem), "id")
+        told.append((answer["options"]["position_margin_m"], answer["approaches"]))
+    (default, with_margin), (zero, without), (large, short) = told
+    assert (default, zero, large) == (DEFAULT_POSITION_MARGIN_M, 0.0, 0.05)
+    for approach in with_margin:
+        assert approach["position_margin_m"] == default
+        assert "margin_short" not in approach
+    assert not any({"position_margin_m", "margin_short"} & set(one) for one in without)
+    for approach in short:
+        assert approach["position_margin_m"] < large
+        assert approach["margin_short"] is True
 
 
 def test_bounds_and_proofs_are_told(request_body: Body) -> None:

@@ -64,7 +64,7 @@ def assert_certified(task: ApproachTask) -> bool:
 def test_bounds_are_below_a_sweep_and_near_the_optimum(
     tabletop: Robot, kind: str, norm: str
 ) -> None:
-    options = Options(norm=norm, symmetric_tool=norm == "l2")
+    options = Options(norm=norm, symmetric_tool=norm == "l2", position_margin_m=0.0)
     targets = SETS[kind](tabletop, 25)
     found = [compared(task) for task in tasks(Problem(tabletop, targets, options=options))]
     feasible = [outcome.feasible for outcome in found]
@@ -91,7 +91,12 @@ def test_bounds_hold_at_straight_wrists(tabletop: Robot) -> None:
 
 
 def test_any_reference_and_weights(tabletop: Robot) -> None:
-    options = Options(joint_weights=(5, 4, 3, 0, 0.5, 1), limit_margin_rad=0.05, standoff_m=0.03)
+    options = Options(
+        joint_weights=(5, 4, 3, 0, 0.5, 1),
+        limit_margin_rad=0.05,
+        standoff_m=0.03,
+        position_margin_m=0.0,
+    )
     problem = Problem(tabletop, random_targets(66, 40), options=options)
     starts = np.random.default_rng(66).uniform(tabletop.lower, tabletop.upper, (40, 6))
     feasible = [
@@ -103,7 +108,9 @@ def test_any_reference_and_weights(tabletop: Robot) -> None:
 
 @pytest.mark.parametrize("arm", arms()[1::5], ids=lambda arm: arm.name)
 def test_arms_with_offsets(arm: Robot) -> None:
-    problem = Problem(arm, in_front_of(arm, random_targets(67, 15)))
+    problem = Problem(
+        arm, in_front_of(arm, random_targets(67, 15)), options=Options(position_margin_m=0.0)
+    )
     assert any([assert_certified(task) for task in tasks(problem)])
 
 
@@ -171,7 +178,7 @@ def test_a_spent_budget_leaves_a_valid_bound_and_says_so(tabletop: Robot) -> Non
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("order", ["independent", "given"])
 def test_plans_carry_bounds_for_every_method(tabletop: Robot, method: str, order: str) -> None:
-    options = Options(method=method, order=order, certify=True)
+    options = Options(method=method, order=order, certify=True, position_margin_m=0.0)
     plan = solve(Problem(tabletop, targets_for(method, 70, 20), options=options))
     assert plan.planned >= 5
     assert all(verification.accepted for verification in verify_plan(plan).values())

@@ -4,6 +4,7 @@ import numpy as np
 
 from solver import Options, Problem, Robot
 from solver.approach.arcs.of_problem import feasible_arcs
+from solver.approach.cut_in.between_rows import may_fall_below_zero_between
 from solver.approach.optimum.batch import chosen_paths
 from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
@@ -34,3 +35,11 @@ def test_a_limit_broken_between_rows_is_suspected(tabletop: Robot) -> None:
             assert suspicious, (k, outside)
     assert broken >= 5
     assert np.mean(paths.suspicious) < 0.5
+
+
+def test_a_rate_that_is_as_high_as_it_may_be_at_standby_is_suspected() -> None:
+    """Rooms of a cut-in beside a straight wrist, where 250.7 rad/m were met behind standby."""
+    room = np.array([4e-16, 0.00376, 0.01223, 0.02161, 0.03135, 0.04148, 0.05204, 0.06311])
+    assert may_fall_below_zero_between(room)
+    assert may_fall_below_zero_between(room[::-1].copy())
+    assert not may_fall_below_zero_between(room + 0.01)

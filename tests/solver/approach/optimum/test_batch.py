@@ -13,7 +13,9 @@ from tests.solver.problems import random_targets
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 def test_a_batch_has_the_optima_of_its_targets(tabletop: Robot, norm: str) -> None:
     targets = random_targets(51, 60)
-    options = Options(norm=norm, symmetric_tool=norm == "l2", include=("path",))
+    options = Options(
+        norm=norm, symmetric_tool=norm == "l2", include=("path",), position_margin_m=0.0
+    )
     problem = Problem(tabletop, targets, options=options)
     positions = np.array([target.position_m for target in targets])
     directions = np.array([target.branch_direction for target in targets])

@@ -37,7 +37,7 @@ def drawn(robot: Robot, seed: int, count: int) -> Array:
 @pytest.mark.parametrize("symmetric", [False, True])
 def test_from_any_posture(tabletop: Robot, norm: str, symmetric: bool) -> None:
     targets = random_targets(71, 400)
-    options = Options(norm=norm, symmetric_tool=symmetric, include=("path",))
+    options = Options(norm=norm, symmetric_tool=symmetric, include=("path",), position_margin_m=0.0)
     problem = Problem(tabletop, targets, options=options)
     assert agreeing(problem, targets, drawn(tabletop, 72, 400)) > 100
 
@@ -46,7 +46,9 @@ def test_from_any_posture(tabletop: Robot, norm: str, symmetric: bool) -> None:
 @pytest.mark.parametrize("kind", SETS)
 def test_hard_targets(tabletop: Robot, kind: str, norm: str) -> None:
     targets = SETS[kind](tabletop, 40)
-    problem = Problem(tabletop, targets, options=Options(norm=norm, include=("path",)))
+    problem = Problem(
+        tabletop, targets, options=Options(norm=norm, include=("path",), position_margin_m=0.0)
+    )
     found = agreeing(problem, targets, drawn(tabletop, 73, len(targets)))
     assert found >= 8, found
 
@@ -54,7 +56,7 @@ def test_hard_targets(tabletop: Robot, kind: str, norm: str) -> None:
 def test_joints_of_more_than_a_turn() -> None:
     puma = load_robot("puma560")
     targets = in_front_of(puma, random_targets(74, 150))
-    problem = Problem(puma, targets, options=Options(include=("path",)))
+    problem = Problem(puma, targets, options=Options(include=("path",), position_margin_m=0.0))
     assert agreeing(problem, targets, drawn(puma, 75, len(targets))) > 30
 
 
@@ -64,7 +66,9 @@ def test_a_minimum_beside_the_edge_of_reach(tabletop: Robot) -> None:
     target = Target("1", position, (-0.384055764187898, 0.08938640066787273, -0.3851992639362074))
     reference = (1.550165080431654, 0.40425184469010866, -0.39045001730204354,
                  -0.4896382694536503, -1.115273946733058, -2.3785641403629576)  # fmt: skip
-    problem = Problem(tabletop, [target], options=Options(norm="l2", include=("path",)))
+    problem = Problem(
+        tabletop, [target], options=Options(norm="l2", include=("path",), position_margin_m=0.0)
+    )
     found = closed_form_optima(
         problem, np.array([position]), np.array([target.branch_direction]), np.array([reference])
     )

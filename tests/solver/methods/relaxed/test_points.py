@@ -23,12 +23,13 @@ def drawn(
     return rng.uniform(0.0, 0.03, count), np.stack([shortened(swing, 0.3) for swing in across])
 
 
+@pytest.mark.parametrize("margin_m", [0.0, 0.002])
 @pytest.mark.parametrize("symmetric", [False, True])
 def test_a_point_is_an_unrelaxed_task_and_stands_where_it_says(
-    tabletop: Robot, symmetric: bool
+    tabletop: Robot, symmetric: bool, margin_m: float
 ) -> None:
     rng, seen = np.random.default_rng(85), 0
-    for task in tasks(tabletop, symmetric_tool=symmetric):
+    for task in tasks(tabletop, symmetric_tool=symmetric, position_margin_m=margin_m):
         strikes, swings = drawn(task, rng, 3)
         for strike, swing in zip(strikes, swings, strict=True):
             fixed = fixed_task(task, strike, swing)
@@ -57,7 +58,7 @@ def test_a_point_is_an_unrelaxed_task_and_stands_where_it_says(
 
 def test_a_descent_stays_in_its_zone_and_never_climbs(tabletop: Robot) -> None:
     rng, gained = np.random.default_rng(86), 0
-    for task in tasks(tabletop):
+    for task in tasks(tabletop, position_margin_m=0.0):
         for start in optima_at(task, *drawn(task, rng, 2)):
             (end,) = descended(task, start.placement, 60)
             assert end.effort <= start.effort * (1 + 1e-12)

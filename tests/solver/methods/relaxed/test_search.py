@@ -22,7 +22,7 @@ def offers_of(
     chosen = Options(
         strike_zone_m=strike_m,
         tilt_tolerance_rad=tilt_rad,
-        **options,  # type: ignore[arg-type]
+        **{"position_margin_m": 0.0, **options},  # type: ignore[arg-type]
     )
     problem = Problem(robot, [target], options=chosen)
     task = approach_task(problem, target, problem.start)
@@ -47,7 +47,12 @@ def test_efforts_fall_with_room(
     """They rose to 4.5224, 2.5757 and 2.9973, and the last one was no approach at all."""
     efforts = []
     for strike_m, tilt_rad in zones:
-        options = Options(order="independent", strike_zone_m=strike_m, tilt_tolerance_rad=tilt_rad)
+        options = Options(
+            order="independent",
+            strike_zone_m=strike_m,
+            tilt_tolerance_rad=tilt_rad,
+            position_margin_m=0.0,
+        )
         (approach,) = solve(Problem(tabletop, [target], options=options)).approaches
         assert approach.effort is not None, approach.reason
         efforts.append(approach.effort)
@@ -109,3 +114,15 @@ def test_uncertain_targets_bear_their_uncertainty_in_their_zone(tabletop: Robot)
     assert approach.status == "planned"
     assert approach.displacement_margin_m is not None
     assert approach.displacement_margin_m >= 0.003 - 1e-6
+
+
+def test_more_room_never_bears_less(tabletop: Robot) -> None:
+    """What a target may move counts before effort, as without relaxations."""
+    raised = 0
+    for target in random_targets(seed=83, count=40):
+        _, plain = offers_of(tabletop, target, 0.0, 0.0, position_margin_m=0.002)
+        _, relaxed = offers_of(tabletop, target, 0.02, 0.1, position_margin_m=0.002)
+        if plain.points:
+            assert relaxed.points[0].rank <= plain.points[0].rank
+            raised += relaxed.points[0].level_m > plain.points[0].level_m
+    assert raised >= 2
