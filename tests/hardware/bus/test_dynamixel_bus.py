@@ -24,16 +24,16 @@ class Line:
         self.process = process
 
     def fault(self, *commands: str) -> None:
-        """Have faults, and wait until the program has read them."""
+        """Have faults, and wait until the program has read them, or has ended with the last."""
         assert self.process.stdin is not None
-        self.process.stdin.write("".join(f"{command}\n" for command in commands))
-        self.process.stdin.flush()
-        # A line that is no fault is complained of, after all before it.
         assert self.process.stderr is not None
-        self.process.stdin.write("understood\n")
+        # A line that is no fault is complained of, after all before it.
+        lines = (*commands, "understood")
+        self.process.stdin.write("".join(f"{line}\n" for line in lines))
         self.process.stdin.flush()
-        while "understood" not in self.process.stderr.readline():
-            pass
+        while told := self.process.stderr.readline():
+            if "understood" in told:
+                return
 
 
 @pytest.fixture
