@@ -48,6 +48,7 @@ _ALL = (
     Subject("ncos", "`ncos` without relaxations"),
     Subject("relaxed", "`ncos` with a strike zone and a tilt"),
     Subject("cold_starts", "What the warm start is worth"),
+    Subject("position_margin", "A millimetre of freedom"),
     Subject("given", "Order `given`, against ladder graphs"),
     Subject("optimal", "Order `optimal`, against longer searches"),
     Subject("savings", "Effort saved"),
