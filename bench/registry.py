@@ -49,6 +49,7 @@ _ALL = (
     Subject("relaxed", "`ncos` with a strike zone and a tilt"),
     Subject("more_room", "More room against less"),
     Subject("cold_starts", "What the warm start is worth"),
+    Subject("position_margin", "A millimetre of freedom"),
     Subject("given", "Order `given`, against ladder graphs"),
     Subject("optimal", "Order `optimal`, against longer searches"),
     Subject("savings", "Effort saved"),

@@ -13,8 +13,8 @@ BETWEEN_ROWS_CUSHION: Final = 0.05
 """Share of a joint's second difference that its parabola may be wrong by between two rows."""
 
 MARGIN_REACH: Final = 0.75
-"""The same for the reach, or a rate's room: where that is zero in the first or last row, on its way
-up beside a straight wrist, a hyperbola still falls a little beside it."""
+"""The same share for the reach, or a rate's room: where that is zero in the first or last row, on
+its way up beside a straight wrist, a hyperbola still falls a little beside it."""
 
 MARGIN_CUSHION: Final = 0.5
 """Share of the second difference of the reach, or of a rate's room, that its parabola may be wrong
