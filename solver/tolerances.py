@@ -33,11 +33,6 @@ SINGULAR_WRIST: Final = 1e-10
 """sin(q5) below which q4 and q6 turn about one axis and q4 is set to zero. Above it the directions
 that give q4 still have six digits; below it the axis error made is at most 1e-10 rad."""
 
-NEAR_FEASIBLE_RAD: Final = 0.3
-"""A thinning posture further outside its limits [rad], or out of reach [m], is not looked at more
-closely: its cut-in is not traced, and no programme starts there, as relaxations of centimetres and
-tenths of a radian seldom bring it back."""
-
 JOINT_RATE_RAD_M: Final = 250.0
 """Joint travel for tool travel in the cut-in above which it counts as a wrist jump [rad/m]: 14
 degrees of joint for each millimetre; at 2 rad/s the tool would creep at 8 mm/s."""

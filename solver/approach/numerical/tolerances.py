@@ -53,7 +53,7 @@ DESCENT_SHRINKAGE: Final = 0.85
 """Factor after one that was not: the step stays as it is where a quarter are cheaper."""
 
 DESCENT_GAIN: Final = 1e-9
-"""Effort that a step has to save: less is rounding."""
+"""Effort that a step has to save [that of the norm]: less is rounding."""
 
 DESCENT_REACHED: Final = 1e-11
 """Error [m and rad] of a trial that is back at the target: polishing it moves no joint by as much

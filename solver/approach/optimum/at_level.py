@@ -94,18 +94,23 @@ def raise_margins(
         task = PackedTask(numbers[(1 - sides[k]) // 2, k], retreats, cos_steps)
         g = unpack_geometry(task.numbers)
         margins[k] = margin_at(task, g, angles[k], branches[k], work)
+        borne = False
         for needed in levels[k]:
-            if margins[k] >= needed:
+            borne = margins[k] >= needed
+            if borne:
                 break
-            branches[k], best = -1, math.inf
+            best = math.inf
             for side in range(numbers.shape[0]):
                 task = PackedTask(numbers[side, k], retreats, cos_steps)
                 where, own, cost = cheapest_at_level(task, scratch, work, needed, best)
                 if cost < best:
                     angles[k], branches[k], best = where, own, cost
                     sides[k] = 1 - 2 * side
-            if branches[k] >= 0:
+            borne = best < math.inf
+            if borne:
                 efforts[k], moved[k] = best, True
                 task = PackedTask(numbers[(1 - sides[k]) // 2, k], retreats, cos_steps)
                 margins[k] = margin_at(task, g, angles[k], branches[k], work)
                 break
+        if not borne:
+            branches[k] = -1

@@ -153,7 +153,7 @@ NEAREST_QP_EXACT_SWEEPS: Final = 300
 """Sweeps over the constraints for such a step: limits that nearly oppose agree slowly."""
 
 NEAREST_FOUND_SHARE: Final = 1e-5
-"""The same for the best one found, which is followed to its end."""
+"""The same share for the best one found, which is followed to its end."""
 
 NEAREST_RESTORED_M: Final = 2e-2
 """What may be missing where steps straight back to the constraints are tried [m]; beyond, they are

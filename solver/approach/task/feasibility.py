@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.approach.task.tolerances import NEAR_FEASIBLE_RAD
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import WristGeometry, one_branch, wrap
 from solver.kinematics.straight_rates import between_rate_room, posture_rate_room, posture_rates
 from solver.problem.effort import joint_cost
 from solver.robots.model import Array
-from solver.tolerances import NEAR_FEASIBLE_RAD
 
 
 class CutInTask(NamedTuple):

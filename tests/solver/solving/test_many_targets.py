@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver import Options, Problem, Robot, Target, load_robot, verify
+from solver import Options, Problem, Robot, Target, load_robot, solve, verify
 from solver.comparison.targets import as_targets, drawn_at_edges
 from solver.problem.solution import PLANNED
 from solver.solving.many_targets import plan_many, plan_stops, plans_together
@@ -133,3 +133,20 @@ def test_rail_goes_one_by_one_and_uncertain_targets_stay(tabletop: Robot) -> Non
             found = together[target.id]
             assert verify(problem, found, problem.start).accepted
             assert found.effort == pytest.approx(alone.effort, abs=SAME_AT_LEVEL)
+
+
+def test_targets_that_bear_less_than_wished_for_stay_in_the_batch(tabletop: Robot) -> None:
+    """Their optimum without a margin may bear the next level as it is."""
+    targets = random_targets(seed=95, count=150)
+    options = Options(method="ssas", order="independent", position_margin_m=0.02)
+    plan = solve(Problem(tabletop, targets, options=options))
+    short = {a.target_id for a in plan.approaches if a.margin_short}
+    untimed = Problem(tabletop, targets, options=replace(options, include=("path",)))
+    together = plan_many(untimed, untimed.targets)
+    assert len(short) >= 20
+    assert len(short - set(together)) <= 1
+    for approach in plan.approaches:
+        if approach.target_id in together:
+            other = together[approach.target_id]
+            assert other.position_margin_m == approach.position_margin_m
+            assert other.effort == pytest.approx(approach.effort, rel=1e-6)

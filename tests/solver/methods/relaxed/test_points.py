@@ -40,7 +40,8 @@ def test_a_point_is_an_unrelaxed_task_and_stands_where_it_says(
                 continue
             (point,) = points
             seen += 1
-            assert point.effort == pytest.approx(expected.effort, rel=1e-9)
+            # Where parts end that bear a margin is closed in on from inside, along two ways.
+            assert point.effort == pytest.approx(expected.effort, rel=1e-6 if margin_m else 1e-9)
             pose = forward_kinematics(task.robot, task.tool, point.postures[0])
             target = np.asarray(task.target.position_m)
             found = placement(task.frame, target, point.tool_side, pose)
