@@ -57,13 +57,15 @@ def between_neighbours(task: ApproachTask, kept: Candidate, coupling: Coupling) 
         key=lambda point: (-point.level_m, point.effort + coupling.onwards(point.postures[1])),
     )
     offers = [kept, *(_candidate(task, point) for point in points[:POINTS_KEPT])]
-    iterations = 0
+    iterations, statuses = 0, list[str]()
     for start in (_point(task, kept), *points[:1]):
         end = programme_from(task, start, coupling.next_thinning)
         iterations += end.iterations
+        statuses.append(end.status)
         offers += _on_its_arc(task, start, end)
     offers.sort(key=lambda offer: (-_level(task, offer), coupling.cost(offer)))
-    return replace(offers[0], iterations=iterations, status="solved", others=tuple(offers[1:]))
+    status = "solved" if "solved" in statuses else f"warm_start_after_{statuses[0]}"
+    return replace(offers[0], iterations=iterations, status=status, others=tuple(offers[1:]))
 
 
 def _candidate(task: ApproachTask, point: Point) -> Candidate:
