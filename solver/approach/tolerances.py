@@ -2,10 +2,6 @@
 
 from typing import Final
 
-ARC_SAMPLES: Final = 720
-"""Approach angles on one turn, 0.5 degrees apart, at which effort is drawn, and at which the
-displacement that an approach bears is looked at before its ends are refined."""
-
 ARC_CELLS: Final = 72
 """Cells of one turn in which arcs are searched (5 deg). A single joint's margin is smooth in the
 angle, with a few extrema a turn; a cell must not hold two of them."""

@@ -3,8 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from solver import Options, Problem, Robot, Target
 from solver.comparison.targets import as_targets, drawn_in_box
+from solver.kinematics.forward import forward_kinematics
 
 # F. Ouyang, thesis, 2012, program listing, data set 3 (cm there, m here).
 DATA_SET_3 = (
@@ -43,3 +46,13 @@ def in_front_of(arm: Robot, targets: Sequence[Target]) -> list[Target]:
 def random_targets(seed: int, count: int) -> list[Target]:
     """Targets in a box in front of the arm, branches in every direction; many are unreachable."""
     return list(as_targets(*drawn_in_box(seed, count), range(count)))
+
+
+def reachable_targets(robot: Robot, seed: int, count: int) -> list[Target]:
+    """Where the tool is in random postures well inside the limits, with the branch across it."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(0.9 * robot.lower, 0.9 * robot.upper, (count, len(robot.joints)))
+    poses = forward_kinematics(robot, robot.tools[0], q)
+    return [
+        Target(str(k), pose[:3, 3].tolist(), pose[:3, 1].tolist()) for k, pose in enumerate(poses)
+    ]

@@ -7,10 +7,10 @@ from typing import Final
 import numpy as np
 
 from solver.approach.arcs.many import arcs_of_many
+from solver.approach.arcs.tolerances import ARC_SAMPLES
 from solver.approach.task.constraints import Constraint
 from solver.approach.task.feasibility import sample
 from solver.approach.task.task import ApproachTask, approach_task
-from solver.approach.tolerances import ARC_SAMPLES
 from solver.approach.uncertainty.robustness import robust_arcs
 from solver.kinematics.spherical_wrist import BRANCHES
 from solver.problem.problem import Problem

@@ -45,3 +45,6 @@ is taken for one that does not behave."""
 
 CELL_STACK: Final = 64
 """Parts of a cell that wait to be looked at, at most: each halving adds one."""
+
+ARC_SAMPLES: Final = 720
+"""Approach angles on one turn, 0.5 degrees apart, at which effort is drawn."""

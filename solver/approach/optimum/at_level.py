@@ -9,10 +9,13 @@ those pieces in which effort may be lower are asked what they bear.
 
 import math
 
-import numpy as np
-
 from solver.approach.arcs.search import cell_pieces, open_up
-from solver.approach.optimum.cheapest import at_cusp, cheapest_scratch, list_open_cells
+from solver.approach.optimum.cheapest import (
+    at_cusp,
+    cheapest_scratch,
+    list_open_cells,
+    take_cheapest,
+)
 from solver.approach.optimum.search import least_effort
 from solver.approach.task.packed import PackedTask, unpack_geometry
 from solver.approach.uncertainty.robust_parts import (
@@ -38,14 +41,9 @@ def cheapest_at_level(task, scratch, work, needed, best):
         task, arcs.open_cells, arcs.thinning, scratch.reference, cells, bounds
     )
     angle, branch = math.nan, -1
-    while waiting > 0:
-        first = int(np.argmin(bounds[:waiting]))
-        if bounds[first] >= best:
-            break
-        arm, wrist, k = cells[first]
+    while take_cheapest(cells, bounds, waiting, best):
         waiting -= 1
-        bounds[first] = bounds[waiting]
-        cells[first] = cells[waiting]
+        arm, wrist, k = cells[waiting]
         own = 2 * arm + wrist
         for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, 0, 0)):
             low, high = pieces[n, 1], pieces[n, 2]

@@ -62,17 +62,9 @@ def cheapest(task, scratch, best):
         task, arcs.open_cells, arcs.thinning, scratch.reference, cells, bounds
     )
     angle, branch, work = math.nan, -1, 0
-    while waiting > 0:
-        first = 0
-        for n in range(1, waiting):
-            if bounds[n] < bounds[first]:
-                first = n
-        if bounds[first] >= best:
-            break
-        arm, wrist, k = cells[first]
+    while take_cheapest(cells, bounds, waiting, best):
         waiting -= 1
-        bounds[first] = bounds[waiting]
-        cells[first] = cells[waiting]
+        arm, wrist, k = cells[waiting]
         own = 2 * arm + wrist
         for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, 0, 0)):
             low, high = pieces[n, 1], pieces[n, 2]
@@ -84,6 +76,24 @@ def cheapest(task, scratch, best):
             if cost < best:
                 angle, branch, best = where, own, cost
     return angle, branch, best, work
+
+
+@kernel
+def take_cheapest(cells, bounds, waiting, best):
+    """Puts the cell of the lowest bound last of those waiting; whether that is below `best`."""
+    if waiting == 0:
+        return False
+    first = 0
+    for n in range(1, waiting):
+        if bounds[n] < bounds[first]:
+            first = n
+    if bounds[first] >= best:
+        return False
+    last = waiting - 1
+    arm, wrist, k = cells[first]
+    bounds[first], cells[first] = bounds[last], cells[last]
+    cells[last, 0], cells[last, 1], cells[last, 2] = arm, wrist, k
+    return True
 
 
 @inlined

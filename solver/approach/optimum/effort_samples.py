@@ -15,7 +15,7 @@ from solver.approach.arcs.turns import (
     turns_at_angles,
 )
 from solver.approach.optimum.tolerances import EFFORT_CELL_RAD
-from solver.approach.task.feasibility import choose_turns
+from solver.approach.task.feasibility import choose_packed_turns
 from solver.approach.task.packed import LOWER, REFERENCE, SQUARED, UPPER, WEIGHTS
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
@@ -68,18 +68,13 @@ def path_joints(task, turns, wrist, joints, rows):
 
     `turns` are those along it; `joints` is working memory, shape (6, len(retreats)).
     """
-    numbers, count = task.numbers, len(task.retreats)
+    count = len(task.retreats)
     joints_of_turns(task, turns, count, wrist, joints)
     for i in range(6):
         rows[count - 1, i] = joints[i, count - 1]
         for n in range(count - 2, -1, -1):
             rows[n, i] = rows[n + 1, i] + wrap(joints[i, n] - rows[n + 1, i])
-    choose_turns(
-        numbers[LOWER : LOWER + 6],
-        numbers[UPPER : UPPER + 6],
-        numbers[REFERENCE : REFERENCE + 6],
-        rows,
-    )
+    choose_packed_turns(task.numbers, rows)
 
 
 @kernel

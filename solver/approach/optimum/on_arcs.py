@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.optimum.search import optimum_on_arcs
 from solver.approach.task.task import ApproachTask
@@ -42,14 +40,7 @@ def best_on_arcs(task: ApproachTask) -> ArcOptimum | None:
 
 def least_on_arcs(task: ApproachTask, arcs: Sequence[Arc]) -> ArcOptimum | None:
     """The least effort on some arcs; None when there is none."""
-    packed = [task.packed(side) for side in task.tool_sides]
     chosen, angle, effort, refined = optimum_on_arcs(
-        np.stack([side.numbers for side in packed]),
-        packed[0].retreats,
-        packed[0].cos_steps,
-        np.array([task.tool_sides.index(arc.tool_side) for arc in arcs], dtype=np.int64),
-        np.array([arc.branch for arc in arcs], dtype=np.int64),
-        np.array([arc.lower_rad for arc in arcs]),
-        np.array([arc.upper_rad for arc in arcs]),
+        *task.packed_arcs(arcs),
     )
     return None if chosen < 0 else ArcOptimum(arcs[chosen], angle, effort, refined)

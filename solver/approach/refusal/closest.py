@@ -10,10 +10,10 @@ from enum import IntEnum
 
 import numpy as np
 
-from solver.approach.refusal.displacement_constraints import choose_thinning_turns
 from solver.approach.task.feasibility import (
     fastest_joint,
     limit_margin,
+    nearest_turns,
     posture,
     tool_axes,
     trace,
@@ -53,7 +53,7 @@ def failure(task, angle, branch, rows):
     reach = posture(task, axes, 0.0, branch, rows[last])
     if reach < 0:
         return Stage.REACH_AT_THINNING, reach, 0, last
-    choose_thinning_turns(task, rows[last])
+    nearest_turns(task, rows[last])
     inside, joint = limit_margin(task, rows[last])
     if inside < 0:
         return Stage.LIMIT_AT_THINNING, inside, joint, last

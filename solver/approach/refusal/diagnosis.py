@@ -14,7 +14,7 @@ from solver.approach.task.feasibility import trace
 from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import displacement_margin
-from solver.approach.uncertainty.robust_search import robust_pieces
+from solver.approach.uncertainty.robust_parts import most_borne
 from solver.approach.uncertainty.robustness import needed_margin
 from solver.problem.solution import Arc, Reason
 from solver.robots.model import Array
@@ -107,7 +107,7 @@ def _too_uncertain(task: ApproachTask, tried: Array | None) -> Reason:
     """The reason where approaches are feasible, but none bears the target's uncertainty."""
     needed = needed_margin(task.target)
     exact = task_arcs(_exact(task))
-    spots = _best_spots(task, exact, needed) if tried is None else _tried_spots(task, tried)
+    spots = _best_spots(task, exact) if tried is None else _tried_spots(task, tried)
     best: tuple[float, int, int] = (-1.0, 0, 0)
     rows = np.empty((len(task.retreats_m), 6))
     for spot in spots:
@@ -130,11 +130,11 @@ def _too_uncertain(task: ApproachTask, tried: Array | None) -> Reason:
     return Reason(code, detail, joint=name, margin_m=margin - needed)
 
 
-def _best_spots(task: ApproachTask, arcs: Sequence[Arc], needed: float) -> list[_Spot]:
+def _best_spots(task: ApproachTask, arcs: Sequence[Arc]) -> list[_Spot]:
     spots = []
     for arc in arcs:
-        kernels = task.for_kernels(arc.tool_side)
-        _, _, angle = robust_pieces(kernels, arc.branch, arc.lower_rad, arc.upper_rad, needed)
+        packed = task.packed(arc.tool_side)
+        angle = most_borne(packed, arc.branch, arc.lower_rad, arc.upper_rad)
         spots.append(_Spot(arc.tool_side, arc.branch, float(angle)))
     return spots
 

@@ -19,7 +19,7 @@ from solver.approach.refusal.tolerances import (
     NEAREST_STEEPEST,
 )
 from solver.approach.task.constraints import LIMITS, REACH
-from solver.approach.task.feasibility import CutInTask, posture, tool_axes
+from solver.approach.task.feasibility import CutInTask, nearest_turns, posture, tool_axes
 from solver.approach.uncertainty.sensitivity import turned_rates
 from solver.compiled import kernel
 from solver.kinematics.arctangent import atan2
@@ -132,17 +132,6 @@ def posture_with_rates(task, axes, retreat, turn, branch, q, rates, reach_rates)
 
 
 @kernel
-def choose_thinning_turns(task, near):
-    """Moves the posture at the target to the turns that `thinning` chooses, shape (6,)."""
-    for i in range(6):
-        for turn in (-2 * math.pi, 2 * math.pi):
-            other = near[i] + turn
-            inside = task.lower[i] <= other <= task.upper[i]
-            if inside and abs(other - task.reference[i]) < abs(near[i] - task.reference[i]):
-                near[i] = other
-
-
-@kernel
 def row_constraints(task, turn, retreat, branch, watched, scratch, values, gradients):
     """One row's constraints as distances [m], >= 0 where met, and their gradients.
 
@@ -163,7 +152,7 @@ def row_constraints(task, turn, retreat, branch, watched, scratch, values, gradi
     reach = posture_with_rates(task, scratch.axes, retreat, turn, branch, q, rates, reach_rates)
     scale = (task.geometry.a2 + task.geometry.l3) / 2
     if retreat == 0.0:
-        choose_thinning_turns(task, q)
+        nearest_turns(task, q)
         near[:] = q
     steepest = NEAREST_STEEPEST if reach < 0 else math.inf
     for i in range(6):

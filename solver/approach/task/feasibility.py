@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.approach.task.packed import LOWER, REFERENCE, UPPER
 from solver.approach.task.tolerances import NEAR_FEASIBLE_RAD
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import WristGeometry, one_branch, wrap
@@ -89,14 +90,20 @@ def thinning(task, angle, branch, q):
     axes = np.empty((3, 3))
     tool_axes(task, angle, axes)
     reach = posture(task, axes, 0.0, branch, q)
+    nearest_turns(task, q)
+    margin, _ = limit_margin(task, q)
+    return min(margin, reach)
+
+
+@kernel
+def nearest_turns(task, q):
+    """Moves each joint of a posture to the turn nearest to the reference inside its limits."""
     for i in range(6):
         for turn in (-2 * math.pi, 2 * math.pi):
             other = q[i] + turn
             inside = task.lower[i] <= other <= task.upper[i]
             if inside and abs(other - task.reference[i]) < abs(q[i] - task.reference[i]):
                 q[i] = other
-    margin, _ = limit_margin(task, q)
-    return min(margin, reach)
 
 
 @kernel
@@ -161,6 +168,17 @@ def choose_turns(lower, upper, reference, rows):
             if low + turn >= lower[i] and high + turn <= upper[i] and away < nearest:
                 chosen, nearest = turn, away
         rows[:, i] += chosen
+
+
+@kernel
+def choose_packed_turns(numbers, rows):
+    """`choose_turns` for a packed task's numbers."""
+    choose_turns(
+        numbers[LOWER : LOWER + 6],
+        numbers[UPPER : UPPER + 6],
+        numbers[REFERENCE : REFERENCE + 6],
+        rows,
+    )
 
 
 @kernel

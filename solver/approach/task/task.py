@@ -13,6 +13,7 @@ from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem.options import Options
 from solver.problem.problem import Problem
 from solver.problem.retreats import looked_at_retreats
+from solver.problem.solution import Arc
 from solver.problem.targets import Target
 from solver.robots.model import Array, Robot, Tool
 from solver.robots.rigid import inverse
@@ -99,6 +100,28 @@ class ApproachTask:
     def packed(self, tool_side: int) -> PackedTask:
         """The task as the inner loops take it, with the tool on one side, in the mount's frame."""
         return self._packed[tool_side]
+
+    def packed_arcs(self, arcs: Sequence[Arc]) -> tuple[Array, ...]:
+        """The task by tool side, shape (sides, NUMBERS), with some of its arcs, for the kernels.
+
+        Behind the numbers: retreats and steps of a `PackedTask`, and of each arc the place of its
+        tool side, its branch, and its lower and upper angle [rad], shape (n,) each.
+        """
+        first = self.packed(self.tool_sides[0])
+        return (
+            self.numbers_by_side,
+            first.retreats,
+            first.cos_steps,
+            np.array([self.tool_sides.index(arc.tool_side) for arc in arcs], dtype=np.int64),
+            np.array([arc.branch for arc in arcs], dtype=np.int64),
+            np.array([arc.lower_rad for arc in arcs]),
+            np.array([arc.upper_rad for arc in arcs]),
+        )
+
+    @property
+    def numbers_by_side(self) -> Array:
+        """The packed task's numbers by tool side, shape (sides, NUMBERS)."""
+        return np.stack([self.packed(side).numbers for side in self.tool_sides])
 
     @cached_property
     def _packed(self) -> dict[int, PackedTask]:

@@ -52,22 +52,31 @@ def limit_distance(g, position, axes, branch, q, kind, limit, delta):
         for i in range(3):
             square += gradient[i] * gradient[i]
             missing += gradient[i] * delta[i]
-        change, length = 0.0, 0.0
         for i in range(3):
             new[i] = gradient[i] * missing / square
-            change += (new[i] - delta[i]) ** 2
-            length += new[i] * new[i]
-        while (
-            shifted(g, position, new, axes, branch, q, at) < 0.0 and change > DISPLACEMENT_STEP_M**2
-        ):
-            change, length = change / 4, 0.0
-            for i in range(3):
-                new[i] = (new[i] + delta[i]) / 2
-                length += new[i] * new[i]
-        delta[:] = new
+        change, length = step_inside(g, position, axes, branch, q, delta, new, at)
         if change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
             break
     return math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2)
+
+
+@kernel
+def step_inside(g, position, axes, branch, q, delta, new, at):
+    """Moves delta to `new`, or as far as stays inside the reach; writes the posture there to `at`.
+
+    Returns the squares of how far it moved and of its length [m^2].
+    """
+    change, length = 0.0, 0.0
+    for i in range(3):
+        change += (new[i] - delta[i]) ** 2
+        length += new[i] * new[i]
+    while shifted(g, position, new, axes, branch, q, at) < 0.0 and change > DISPLACEMENT_STEP_M**2:
+        change, length = change / 4, 0.0
+        for i in range(3):
+            new[i] = (new[i] + delta[i]) / 2
+            length += new[i] * new[i]
+    delta[:] = new
+    return change, length
 
 
 @kernel
@@ -96,20 +105,9 @@ def straight_wrist_distance(g, position, axes, branch, q, delta):
         determinant = max(m11 * m22 - m12 * m12, LEAST_DIVISOR)
         along = (m22 * value1 - m12 * value2) / determinant
         across = (m11 * value2 - m12 * value1) / determinant
-        change, length = 0.0, 0.0
         for i in range(3):
             new[i] = along * first[i] + across * second[i]
-            change += (new[i] - delta[i]) ** 2
-            length += new[i] * new[i]
-        # Shortened where it leads out of reach, as for `limit_distance`.
-        while (
-            shifted(g, position, new, axes, branch, q, at) < 0.0 and change > DISPLACEMENT_STEP_M**2
-        ):
-            change, length = change / 4, 0.0
-            for i in range(3):
-                new[i] = (new[i] + delta[i]) / 2
-                length += new[i] * new[i]
-        delta[:] = new
+        change, length = step_inside(g, position, axes, branch, q, delta, new, at)
         near_tip = abs(math.sin(at[4] + g.offsets[4])) < STRAIGHT_WRIST_SINE
         if near_tip or change <= DISPLACEMENT_STEP_RELATIVE**2 * length:
             break

@@ -13,10 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.approach.task.constraints import LIMITS
-from solver.approach.task.feasibility import choose_turns
+from solver.approach.task.feasibility import choose_packed_turns
 from solver.approach.task.packed import (
     LOWER,
-    REFERENCE,
     UPPER,
     PackedTask,
     tool_place,
@@ -79,13 +78,7 @@ def write_cut_in(task, g, angle, branch, work):
             continue
         for i in range(6):
             rows[n, i] = rows[n + 1, i] + wrap(rows[n, i] - rows[n + 1, i])
-    numbers = task.numbers
-    choose_turns(
-        numbers[LOWER : LOWER + 6],
-        numbers[UPPER : UPPER + 6],
-        numbers[REFERENCE : REFERENCE + 6],
-        rows,
-    )
+    choose_packed_turns(task.numbers, rows)
 
 
 @kernel
@@ -245,7 +238,7 @@ def robust_end(task, g, branch, inside, above, outside, below, needed, work):
 
 
 @kernel
-def parts_of_arcs(numbers, retreats, cos_steps, sides, branches, lower, upper, needed):
+def parts_of_arcs(needed, numbers, retreats, cos_steps, sides, branches, lower, upper):
     """Robust parts of some arcs of one target, shape (parts, 3): the arc's place, and both ends.
 
     `numbers` are packed rows by tool side, shape (sides, NUMBERS); the arcs have shape (n,) each.
@@ -262,6 +255,33 @@ def parts_of_arcs(numbers, retreats, cos_steps, sides, branches, lower, upper, n
             table[count, 0], table[count, 1:] = n, work.parts[k]
             count += 1
     return table[:count].copy()
+
+
+@kernel
+def most_borne(task, branch, lower, upper):
+    """The angle of a feasible arc at which a target may move furthest [rad].
+
+    Sampled, and closed in on beside the best sample.
+    """
+    g, work = unpack_geometry(task.numbers), robust_work(len(task.retreats))
+    n = max(LEAST_EFFORT_CELLS, math.ceil((upper - lower) / ROBUST_CELL_RAD)) + 1
+    angles, best, most = np.linspace(lower, upper, n), 0, -math.inf
+    for k in range(n):
+        margin = margin_at(task, g, angles[k], branch, work)
+        if margin > most:
+            best, most = k, margin
+    where = angles[best]
+    low, high = angles[max(best - 1, 0)], angles[min(best + 1, n - 1)]
+    while high - low > ROBUST_ANGLE_RAD:
+        x1, x2 = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        f1, f2 = margin_at(task, g, x1, branch, work), margin_at(task, g, x2, branch, work)
+        if f1 >= f2:
+            high = x2
+        else:
+            low = x1
+        if max(f1, f2) > most:
+            where, most = (x1 if f1 >= f2 else x2), max(f1, f2)
+    return where
 
 
 @kernel

@@ -42,17 +42,7 @@ def robust_arcs(task: ApproachTask, arcs: Sequence[Arc]) -> tuple[Arc, ...]:
 
 def arcs_bearing(task: ApproachTask, arcs: Sequence[Arc], margin: float) -> tuple[Arc, ...]:
     """The parts of feasible arcs that bear a displacement of the target [m]."""
-    packed = [task.packed(side) for side in task.tool_sides]
-    parts = parts_of_arcs(
-        np.stack([side.numbers for side in packed]),
-        packed[0].retreats,
-        packed[0].cos_steps,
-        np.array([task.tool_sides.index(arc.tool_side) for arc in arcs], dtype=np.int64),
-        np.array([arc.branch for arc in arcs], dtype=np.int64),
-        np.array([arc.lower_rad for arc in arcs]),
-        np.array([arc.upper_rad for arc in arcs]),
-        margin,
-    )
+    parts: Array = parts_of_arcs(margin, *task.packed_arcs(arcs))
     return tuple(_part(arcs[int(place)], low, high) for place, low, high in parts.tolist())
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.approach.optimum.cheapest import cheapest, cheapest_scratch
 from solver.approach.task.packed import COLUMNS, PackedTask
-from solver.compiled import kernel
+from solver.compiled import inlined, kernel
 from solver.methods.relaxed.tolerances import (
     SIMPLEX_GAIN,
     SIMPLEX_SHARE,
@@ -25,6 +25,17 @@ _TURNED = np.array(
     [COLUMNS[name] for name in ("y", "outward", "sideways", "x_outward", "x_sideways")]
 )
 _OUTWARD, _SIDEWAYS = COLUMNS["outward"], COLUMNS["sideways"]
+
+
+@inlined
+def turned_about(axis, cos, sin, x, y, z):
+    """A vector turned about a unit axis, shape (3,), by an angle's cosine and sine (Rodrigues)."""
+    part = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - cos)
+    return (
+        cos * x + part * axis[0] + sin * (axis[1] * z - axis[2] * y),
+        cos * y + part * axis[1] + sin * (axis[2] * x - axis[0] * z),
+        cos * z + part * axis[2] + sin * (axis[0] * y - axis[1] * x),
+    )
 
 
 @kernel
@@ -45,10 +56,8 @@ def write_fixed(numbers, strike, along, across, fixed):
     cos, sin = math.cos(angle), math.sin(angle)
     for first in _TURNED:
         x, y, z = numbers[first], numbers[first + 1], numbers[first + 2]
-        part = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - cos)
-        fixed[first] = cos * x + part * axis[0] + sin * (axis[1] * z - axis[2] * y)
-        fixed[first + 1] = cos * y + part * axis[1] + sin * (axis[2] * x - axis[0] * z)
-        fixed[first + 2] = cos * z + part * axis[2] + sin * (axis[0] * y - axis[1] * x)
+        turned = turned_about(axis, cos, sin, x, y, z)
+        fixed[first], fixed[first + 1], fixed[first + 2] = turned
 
 
 @kernel

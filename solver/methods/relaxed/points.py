@@ -60,7 +60,7 @@ def optima_at(task: ApproachTask, strikes_m: Array, swings_rad: Array) -> list[P
     n, ends = len(strikes_m), even_retreats(task.options, 2)
     angles, efforts, rows = np.empty(n), np.empty(n), np.empty((n, 2, 6))
     sides, branches = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
-    numbers = _numbers(task)
+    numbers = task.numbers_by_side
     fixed = np.empty((len(numbers), n, numbers.shape[1]))
     frame, retreats = task.frame, np.asarray(task.retreats_m)
     write_points(numbers, strikes_m, swings_rad @ frame.outward, swings_rad @ frame.sideways, fixed)
@@ -109,7 +109,7 @@ def descended(task: ApproachTask, near: Placement, looks: int) -> list[Point]:
     parts = np.array([near.strike_m, swing @ frame.outward, swing @ frame.sideways])
     shares = np.divide(parts, lengths, out=np.zeros(3), where=lengths > 0)
     retreats = np.asarray(task.retreats_m)
-    ended = descend(_numbers(task), retreats, jump_cosines(retreats), zone, shares, looks)
+    ended = descend(task.numbers_by_side, retreats, jump_cosines(retreats), zone, shares, looks)
     strike, along, across = (lengths * ended).tolist()
     return optimum_at(task, strike, along * frame.outward + across * frame.sideways)
 
@@ -129,7 +129,3 @@ def angle_in(fixed: ApproachTask, task: ApproachTask, seen: Placement) -> float:
     """The approach angle of a fixed task at which its tool stands as placed in the relaxed one."""
     z = rotation(seen.swing_rad) @ task.frame.direction(seen.approach_angle_rad)
     return float(np.arctan2(z @ fixed.frame.sideways, z @ fixed.frame.outward))
-
-
-def _numbers(task: ApproachTask) -> Array:
-    return np.stack([task.packed(side).numbers for side in task.tool_sides])

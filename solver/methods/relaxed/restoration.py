@@ -15,6 +15,7 @@ from solver.approach.task.constraints import JOINTS
 from solver.approach.task.feasibility import tool_axes
 from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import BRANCHES, one_branch
+from solver.methods.relaxed.descent import turned_about
 from solver.methods.relaxed.tolerances import (
     RESTORED_ANGLES,
     RESTORED_DAMPING,
@@ -44,11 +45,8 @@ def relaxed_posture(task, zone, x, retreat, branch, q):
         n = (along * task.outward + across * task.sideways) / angle
         cos, sin = math.cos(angle), math.sin(angle)
         for j in range(3):
-            v = axes[:, j].copy()
-            part = (n[0] * v[0] + n[1] * v[1] + n[2] * v[2]) * (1.0 - cos)
-            axes[0, j] = cos * v[0] + part * n[0] + sin * (n[1] * v[2] - n[2] * v[1])
-            axes[1, j] = cos * v[1] + part * n[1] + sin * (n[2] * v[0] - n[0] * v[2])
-            axes[2, j] = cos * v[2] + part * n[2] + sin * (n[0] * v[1] - n[1] * v[0])
+            turned = turned_about(n, cos, sin, axes[0, j], axes[1, j], axes[2, j])
+            axes[0, j], axes[1, j], axes[2, j] = turned
     beyond = zone[0] * x[1] - retreat
     for i in range(3):
         position[i] = task.position[i] + beyond * axes[i, 2]

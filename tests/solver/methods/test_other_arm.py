@@ -3,23 +3,14 @@
 import numpy as np
 import pytest
 
-from solver import Options, Problem, Robot, Target, solve
+from solver import Options, Problem, Robot, solve
 from solver.approach.numerical.warm_start import polished_thinning
 from solver.approach.task.task import ApproachTask, approach_task
-from solver.kinematics.forward import forward_kinematics, jacobian
+from solver.kinematics.forward import jacobian
 from solver.problem.effort import posture_effort
 from solver.robots.model import Array
 from tests.solver.kinematics.arms import seven_joints, ur5
-
-
-def reachable_targets(robot: Robot, seed: int, count: int) -> list[Target]:
-    """Where the tool is in random postures well inside the limits, with the branch across it."""
-    rng = np.random.default_rng(seed)
-    q = rng.uniform(0.9 * robot.lower, 0.9 * robot.upper, (count, len(robot.joints)))
-    poses = forward_kinematics(robot, robot.tools[0], q)
-    return [
-        Target(str(k), pose[:3, 3].tolist(), pose[:3, 1].tolist()) for k, pose in enumerate(poses)
-    ]
+from tests.solver.problems import reachable_targets
 
 
 def effort_of(task: ApproachTask, posture: Array) -> float:

@@ -27,16 +27,7 @@ from solver.problem.solution import Reason
 from solver.robots.model import Array
 from solver.solving.retiming import ChosenApproach, retime
 from tests.solver.kinematics.arms import seven_joints, ur5
-
-
-def reachable_targets(robot: Robot, seed: int, count: int) -> list[Target]:
-    """Where the tool is in random postures well inside the limits, with the branch across it."""
-    rng = np.random.default_rng(seed)
-    q = rng.uniform(0.9 * robot.lower, 0.9 * robot.upper, (count, len(robot.joints)))
-    poses = forward_kinematics(robot, robot.tools[0], q)
-    return [
-        Target(str(k), pose[:3, 3].tolist(), pose[:3, 1].tolist()) for k, pose in enumerate(poses)
-    ]
+from tests.solver.problems import reachable_targets
 
 
 @pytest.mark.parametrize("robot", [ur5(), seven_joints()], ids=lambda robot: robot.name)
