@@ -53,19 +53,27 @@ def methods() -> None:
 
 
 def refusals_and_bounds() -> None:
-    """What is refused, certified, uncertain, untimed or relaxed goes through kernels of its own."""
+    """What is refused, certified, uncertain or untimed goes through kernels of its own."""
     robot = load_robot("tabletop")
+    several, options = _several(robot), Options(method="ssas", order="independent")
+    solve(Problem(robot, several, options=replace(options, certify=True)))
+    solve(Problem(robot, several, options=replace(options, include=("path",))))
+
+
+def relaxations() -> None:
+    """So does what is relaxed."""
+    robot = load_robot("tabletop")
+    options = Options(order="independent", strike_zone_m=0.01, tilt_tolerance_rad=0.1)
+    solve(Problem(robot, _several(robot), options=options))
+
+
+def _several(robot: Robot) -> list[Target]:
     target = home_target(robot)
-    several = [
+    return [
         target,
         replace(target, id="refused", position_m=(0.0, 0.0, 1.0)),
         replace(target, id="uncertain", position_std_m=1e-5),
     ]
-    options = Options(method="ssas", order="independent")
-    solve(Problem(robot, several, options=replace(options, certify=True)))
-    solve(Problem(robot, several, options=replace(options, include=("path",))))
-    relaxed = replace(options, method="ncos", strike_zone_m=0.01, tilt_tolerance_rad=0.1)
-    solve(Problem(robot, several, options=relaxed))
 
 
 def orders() -> None:
@@ -92,6 +100,7 @@ PARTS: Final[Mapping[str, Callable[[], None]]] = {
     "orders": orders,
     "methods": methods,
     "other_arms": other_arms,
+    "relaxations": relaxations,
 }
 
 
