@@ -92,7 +92,8 @@ async def _measure(pid: int, port: int, given: argparse.Namespace) -> list[Row]:
     rows = [*await _batches(client, given.runs), *await _singles(client, given.single_s)]
     samples: list[tuple[float, int]] = []
     sampling = asyncio.create_task(sample(pid, SAMPLE_S, samples))
-    tally = await mixed_load(client, given.mixed_s, 6, compare=True)
+    until = time.monotonic() + given.mixed_s
+    tally = await mixed_load(client, lambda _: time.monotonic() < until, 6, compare=True)
     sampling.cancel()
     client.close()
     return [*rows, *mixed_rows(tally, samples, given.mixed_s)]

@@ -2,7 +2,6 @@
 
 import asyncio
 import random
-import time
 from collections import Counter
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
@@ -68,9 +67,9 @@ class _Visitor:
             (10, self._provoke), (4, self._look), (4, self._job),
         ]  # fmt: skip
 
-    async def run(self, until: float) -> None:
+    async def run(self, goes_on: Callable[[Tally], bool]) -> None:
         weights, actions = zip(*self._actions, strict=True)
-        while time.monotonic() < until:
+        while goes_on(self._tally):
             (action,) = self._random.choices(actions, weights)
             try:
                 await action()
@@ -148,13 +147,14 @@ PROVOCATIONS: Final = (
 )
 
 
-async def mixed_load(client: Client, duration_s: float, seed: int, *, compare: bool) -> Tally:
-    """CLIENTS visitors for so long; one comparison at the start if wanted."""
+async def mixed_load(
+    client: Client, goes_on: Callable[[Tally], bool], seed: int, *, compare: bool
+) -> Tally:
+    """CLIENTS visitors for as long as it goes on; one comparison at the start if wanted."""
     tally = Tally()
     if compare:
         answer = await client.request("POST", "/v1/comparisons", COMPARISON)
         tally.expect("comparison", answer, 202)
-    until = time.monotonic() + duration_s
     visitors = [_Visitor(client, tally, seed + number) for number in range(CLIENTS)]
-    await asyncio.gather(*(visitor.run(until) for visitor in visitors))
+    await asyncio.gather(*(visitor.run(goes_on) for visitor in visitors))
     return tally
