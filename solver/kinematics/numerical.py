@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.compiled import kernel
-from solver.kinematics.forward import jacobian
 from solver.kinematics.tolerances import (
     NUMERICAL_FOLLOWED,
     NUMERICAL_MOST_PIECES,
@@ -86,28 +85,6 @@ def postures_behind(robot: Robot, tool: Tool, thinning: Array, retreats: Array) 
     locate(chain, rows[-1], frames)
     follow(chain, frames[-1, :3, 3].copy(), frames[-1, :3, :3].copy(), retreats, rows)
     return rows
-
-
-def rates_behind(robot: Robot, tool: Tool, rows: Array) -> Array:
-    """How fast joints turn or slide in a cut-in of `postures_behind`, for a unit of tool travel.
-
-    From the Jacobian's columns of the joints that move there, those chosen at the last row.
-
-    Args:
-        robot: any arm.
-        tool: its tool.
-        rows: postures of the cut-in, thinning last, shape (k, n) [rad or m].
-
-    Returns:
-        Magnitudes, shape (k, n) [rad/m or m/m].
-    """
-    chain, n = chain_of(robot, tool), rows.shape[1]
-    frames, rates = np.empty((n + 1, 4, 4)), np.zeros_like(rows)
-    locate(chain, np.ascontiguousarray(rows[-1]), frames)
-    free = free_joints(chain, frames, np.empty((6, n))) > 0
-    along = np.concatenate((frames[n, :3, 2], np.zeros(3)))
-    rates[:, free] = np.abs(np.linalg.pinv(jacobian(robot, tool, rows)[..., free]) @ along)
-    return rates
 
 
 @kernel
@@ -181,29 +158,39 @@ def pose_error(frame, position, axes, error):
 
 @kernel
 def solve_damped(columns, damping, error, solution):
-    """Solves (J J^T + damping I) solution = error by Cholesky, J of shape (6, any)."""
-    lower = np.zeros((6, 6))
+    """Solves (J J^T + damping I) solution = error, J of shape (6, any)."""
+    gram = np.empty((6, 6))
     for i in range(6):
         for j in range(i + 1):
-            total = damping if i == j else 0.0
+            gram[i, j] = damping if i == j else 0.0
             for k in range(columns.shape[1]):
-                total += columns[i, k] * columns[j, k]
+                gram[i, j] += columns[i, k] * columns[j, k]
+    solve_gram(gram, error, solution)
+
+
+@kernel
+def solve_gram(gram, right, solution):
+    """Solves gram solution = right by Cholesky, which the lower half of gram is replaced by."""
+    n = len(right)
+    for i in range(n):
+        for j in range(i + 1):
+            total = gram[i, j]
             for k in range(j):
-                total -= lower[i, k] * lower[j, k]
+                total -= gram[i, k] * gram[j, k]
             if i == j:
-                lower[i, i] = math.sqrt(max(total, LEAST_DIVISOR))
+                gram[i, i] = math.sqrt(max(total, LEAST_DIVISOR))
             else:
-                lower[i, j] = total / lower[j, j]
-    for i in range(6):
-        total = error[i]
+                gram[i, j] = total / gram[j, j]
+    for i in range(n):
+        total = right[i]
         for k in range(i):
-            total -= lower[i, k] * solution[k]
-        solution[i] = total / lower[i, i]
-    for i in range(5, -1, -1):
+            total -= gram[i, k] * solution[k]
+        solution[i] = total / gram[i, i]
+    for i in range(n - 1, -1, -1):
         total = solution[i]
-        for k in range(i + 1, 6):
-            total -= lower[k, i] * solution[k]
-        solution[i] = total / lower[i, i]
+        for k in range(i + 1, n):
+            total -= gram[k, i] * solution[k]
+        solution[i] = total / gram[i, i]
 
 
 @kernel
@@ -263,14 +250,20 @@ def polish(chain, position, axes, free, q):
 def follow(chain, position, axes, retreats, rows):
     """Writes the postures at retreats behind a pose to rows, shape (len(retreats), n).
 
-    The last row, at the pose itself, is given; each other starts from the row after it. Returns the
-    largest error left [m and rad].
+    The last row is given; each other starts from the row after it. Returns the largest error left
+    [m and rad].
     """
     n = rows.shape[1]
     frames = np.empty((n + 1, 4, 4))
     locate(chain, rows[-1], frames)
     free = free_joints(chain, frames, np.empty((6, n)))
-    worst = 0.0
+    return follow_with(chain, position, axes, free, retreats, rows)
+
+
+@kernel
+def follow_with(chain, position, axes, free, retreats, rows):
+    """`follow` with the joints that are to move, shape (n,), 1 free and 0 still."""
+    n, worst = rows.shape[1], 0.0
     place = np.empty(3)
     for k in range(len(retreats) - 2, -1, -1):
         # Where the joints turn fast, Newton's method needs a nearer neighbour than the row after.

@@ -27,6 +27,9 @@ from solver.kinematics.tolerances import SWING_SHARE
 from solver.tolerances import JOINT_RATE_RAD_M, LEAST_DIVISOR
 
 _MOST = 2.0 * JOINT_RATE_RAD_M
+_SLOWNESS = 1.0 / JOINT_RATE_RAD_M
+# Divisions by what is the same for all rows are products with a quotient, which the compiler takes
+# out of a loop over rows.
 
 
 @inlined
@@ -55,8 +58,8 @@ def straight_rates(g, cos2, sin2, cos3, sin3, cos4, sin4, cos5, sin5):
     rate1 = _held(across / _divisor(x))
     r = cos23 * r13 + g.sign3 * sin23 * r33 - g.sign1 * g.shoulder * rate1
     s = sin23 * r13 - g.sign3 * cos23 * r33
-    at2 = (cos2g * r + sin2g * s) / g.a2
-    at23 = -(cos2 * r + sin2 * s) / g.l3
+    at2 = (cos2g * r + sin2g * s) * (1.0 / g.a2)
+    at23 = -(cos2 * r + sin2 * s) * (1.0 / g.l3)
     rate23 = _held(at23 / _divisor(sin_g))
     wx, wy, wz = g.sign1 * sin23 * rate1, g.sign3 * rate23, -g.sign1 * g.sign3 * cos23 * rate1
     along = g.sign5 * (wx * cos4 + wy * sin4)
@@ -73,34 +76,34 @@ def rate_room(g, cos2, sin2, cos3, sin3, cos4, sin4, cos5, sin5):
     x, at1, sin_g, at2, at3, at4, rate5, at6 = straight_rates(
         g, cos2, sin2, cos3, sin3, cos4, sin4, cos5, sin5
     )
-    waist = (abs(x) - abs(at1) / JOINT_RATE_RAD_M) / (g.a2 + g.l3)
-    elbow = abs(sin_g) - max(abs(at2), abs(at3)) / JOINT_RATE_RAD_M
-    wrist = abs(sin5) - max(abs(at4), abs(at6)) / JOINT_RATE_RAD_M
-    return min(min(waist, elbow), min(wrist, 1.0 - abs(rate5) / JOINT_RATE_RAD_M))
+    waist = (abs(x) - abs(at1) * _SLOWNESS) * (1.0 / (g.a2 + g.l3))
+    elbow = abs(sin_g) - max(abs(at2), abs(at3)) * _SLOWNESS
+    wrist = abs(sin5) - max(abs(at4), abs(at6)) * _SLOWNESS
+    return min(min(waist, elbow), min(wrist, 1.0 - abs(rate5) * _SLOWNESS))
 
 
 @inlined
 def ahead_share(g, cos2, sin2, cos3, sin3):
     """x, how far the wrist centre is ahead of the waist's axis, as a share of the arm's links."""
     cos_g, sin_g = cos3 * g.cos_beta - sin3 * g.sin_beta, sin3 * g.cos_beta + cos3 * g.sin_beta
-    return (g.a1 + g.a2 * cos2 + g.l3 * (cos2 * cos_g - sin2 * sin_g)) / (g.a2 + g.l3)
+    length = 1.0 / (g.a2 + g.l3)
+    return (g.a1 + g.a2 * cos2 + g.l3 * (cos2 * cos_g - sin2 * sin_g)) * length
 
 
 @inlined
-def swing_room(ax, ay, bx, by, spacing):
+def swing_room(ax, ay, bx, by, per_metre):
     """What a point's direction in the plane is short of the highest rate as it moves from a to b.
 
     Where it comes nearest to the origin, its distance less what that would have to be, for joints
-    that swing round a singular posture between two rows of a cut-in, `spacing` apart [m].
+    that swing round a singular posture between two rows of a cut-in, so many a metre.
     """
     dx, dy = bx - ax, by - ay
     share = -(ax * dx + ay * dy) / max(dx * dx + dy * dy, LEAST_DIVISOR)
     share = min(max(share, 0.0), 1.0)
     x, y = ax + share * dx, ay + share * dy
     nearest = math.sqrt(x * x + y * y)
-    return nearest - SWING_SHARE * abs(ax * by - ay * bx) / (
-        JOINT_RATE_RAD_M * spacing * max(nearest, LEAST_DIVISOR)
-    )
+    swing = SWING_SHARE * _SLOWNESS * per_metre * abs(ax * by - ay * bx)
+    return nearest - swing / max(nearest, LEAST_DIVISOR)
 
 
 @kernel
@@ -158,5 +161,5 @@ def between_rate_room(g, before, after, spacing):
                 size = math.sin(q[4] + g.offsets[4])
             turn = q[joint] + g.offsets[joint]
             place[2 * end], place[2 * end + 1] = size * math.cos(turn), size * math.sin(turn)
-        least = min(least, swing_room(place[0], place[1], place[2], place[3], spacing))
+        least = min(least, swing_room(place[0], place[1], place[2], place[3], 1.0 / spacing))
     return least

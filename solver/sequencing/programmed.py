@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from solver.approach.cut_in.cut_in import broken_between
+from solver.approach.cut_in.broken_between_rows import broken_between
 from solver.approach.optimum.on_arcs import ArcOptimum
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask

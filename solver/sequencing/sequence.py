@@ -7,7 +7,7 @@ import numpy as np
 
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.arcs.of_problem import arcs_of_packed
-from solver.approach.cut_in.cut_in import broken_between
+from solver.approach.cut_in.broken_between_rows import broken_between
 from solver.approach.optimum.batch import chosen_paths
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle

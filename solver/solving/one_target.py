@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from solver.approach.arcs.arcs import task_arcs
 from solver.approach.bounds.certificate import certify_task, is_infeasible
-from solver.approach.cut_in.cut_in import broken_between, build_cut_in
+from solver.approach.cut_in.broken_between_rows import broken_between
+from solver.approach.cut_in.cut_in import build_cut_in
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.any_arm import Solve

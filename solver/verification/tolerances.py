@@ -17,9 +17,6 @@ RATE_SCREENED: Final = 0.25
 """Share of JOINT_RATE_RAD_M, from row to row, below which no joint is faster than that between two:
 where it is at one point it turns by 0.4 rad or more within 3 mm."""
 
-RATE_ZOOMS: Final = 2
-"""How often the place of the fastest rate is closed in on, fiftyfold each: 0.3 mm to 0.1 um."""
-
 DISPLACED_SPACING_M: Final = 0.01
 """About how far apart rows are at which it is tried how far a target may move [m]: all rows have
 one orientation, so what stops one stops those beside it no more than their distance later."""

@@ -35,6 +35,9 @@ from solver.robots.model import Array
 ARMS = 4
 """Branches but for the wrist: shoulder and elbow."""
 
+CELL_SLOTS = 8
+"""Cut-ins that are kept while a cell is split: a cell takes four, of which its halves use three."""
+
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
@@ -50,8 +53,11 @@ class ArcScratch(NamedTuple):
     known_paths: Array
     margins: Array
     known_margins: Array
+    cell_angles: Array
+    cell_ages: Array
     cell_paths: Array
     cell_margins: Array
+    cell_known_margins: Array
     single: Array
     work: Array
     work_margins: Array
@@ -71,8 +77,11 @@ def arc_scratch(rows):
         np.empty((ARMS, ARC_CELLS), dtype=np.bool_),
         np.empty((ARMS, 2, ARC_CELLS, CONSTRAINTS)),
         np.empty((ARMS, 2, ARC_CELLS), dtype=np.bool_),
-        np.empty((4, TURN_ROWS, path_columns(rows))),
-        np.empty((2, CONSTRAINTS)),
+        np.empty(CELL_SLOTS),
+        np.empty(CELL_SLOTS, dtype=np.int64),
+        np.empty((CELL_SLOTS, TURN_ROWS, path_columns(rows))),
+        np.empty((CELL_SLOTS, CONSTRAINTS)),
+        np.empty(CELL_SLOTS, dtype=np.bool_),
         np.empty((TURN_ROWS, 1)),
         np.empty((TURN_ROWS, path_columns(rows))),
         np.empty(CONSTRAINTS),

@@ -22,12 +22,20 @@ from solver.approach.arcs.cells import (
     close_cells,
     path_state,
 )
-from solver.approach.arcs.roots import ARMS, extreme_margin, root, single_margin, tighten
+from solver.approach.arcs.roots import (
+    ARMS,
+    CELL_SLOTS,
+    extreme_margin,
+    root,
+    single_margin,
+    tighten,
+)
 from solver.approach.arcs.tolerances import (
     CELL_STACK,
     EXTREME_ANGLE_RAD,
     NARROWEST_ARC_RAD,
     NARROWEST_CELL_RAD,
+    SAME_ANGLE_RAD,
 )
 from solver.approach.arcs.turns import (
     CONSTRAINTS,
@@ -209,24 +217,58 @@ def push(stack, top, low, high, by_low, by_high):
 
 
 @kernel
+def forget_cells(scratch):
+    """Marks the turns along cut-ins that `know_cell` keeps as those of no angle."""
+    scratch.cell_angles[:] = math.inf
+    scratch.cell_ages[:] = 0
+
+
+@kernel
+def know_cell(task, scratch, arm, angle, apart):
+    """The slot with the turns along the cut-in at an angle, or at one no further than `apart`.
+
+    A cell shares its ends with its halves, and has theirs beside them. Where none has them they are
+    computed into the slot that was not asked for the longest.
+    """
+    oldest = 0
+    for slot in range(CELL_SLOTS):
+        if abs(scratch.cell_angles[slot] - angle) <= apart:
+            scratch.cell_ages[slot] = 0
+            return slot
+        if scratch.cell_ages[slot] > scratch.cell_ages[oldest]:
+            oldest = slot
+    turns_along_path(task, angle, arm, scratch.cell_paths[oldest])
+    scratch.cell_angles[oldest], scratch.cell_ages[oldest] = angle, 0
+    scratch.cell_known_margins[oldest] = False
+    return oldest
+
+
+@kernel
 def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count):
     """Appends the feasible pieces of a cell that has to be split; returns the new count."""
     stack = np.empty((CELL_STACK, 4))
     push(stack, 0, low, high, by_low, by_high)
     top = 1
-    paths, margins = scratch.cell_paths, scratch.cell_margins
+    paths, margins, ages = scratch.cell_paths, scratch.cell_margins, scratch.cell_ages
+    forget_cells(scratch)
     while top > 0:
         top -= 1
         a, b, by_a, by_b = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
         width = b - a
-        for m in range(4):
-            angle = a + (m - 1) * width if m != 2 else b
-            turns_along_path(task, angle, arm, paths[m])
-        path_margins(task, paths[1], wrist, margins[0])
-        path_margins(task, paths[2], wrist, margins[1])
+        for slot in range(CELL_SLOTS):
+            ages[slot] += 1
+        # The ends first: they have to be met exactly, what lies beside them only nearly.
+        left, right = know_cell(task, scratch, arm, a, 0.0), know_cell(task, scratch, arm, b, 0.0)
+        outer = know_cell(task, scratch, arm, a - width, SAME_ANGLE_RAD)
+        beyond = know_cell(task, scratch, arm, b + width, SAME_ANGLE_RAD)
+        for slot in (left, right):
+            if not scratch.cell_known_margins[slot]:
+                path_margins(task, paths[slot], wrist, margins[slot])
+                scratch.cell_known_margins[slot] = True
         state, i, row = path_state(
-            task, wrist, width, paths[0], paths[1], paths[2], paths[3], margins[0], margins[1]
-        )
+            task, wrist, width, paths[outer], paths[left], paths[right], paths[beyond],
+            margins[left], margins[right],
+        )  # fmt: skip
         middle = (a + b) / 2
         if state == CellState.DEAD:
             continue
@@ -237,7 +279,7 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
             first, end = (REACH, JUMP) if state == CellState.EDGE else (0, CONSTRAINTS)
             clean, c, d, by_c, by_d = tighten(
                 task, scratch, arm, wrist, first, end, a, b,
-                paths[1], paths[2], margins[0], margins[1],
+                paths[left], paths[right], margins[left], margins[right],
             )  # fmt: skip
             by_c, by_d = by_a if c == a else by_c, by_b if d == b else by_d
             if clean and c >= d:
@@ -250,12 +292,14 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
                 top += 1
                 continue
         if width < NARROWEST_CELL_RAD or top + 2 > len(stack):
-            if max(margins[0, JUMP], margins[1, JUMP]) < 0.0:
+            if max(margins[left, JUMP], margins[right, JUMP]) < 0.0:
                 count = append_sliver(task, scratch, arm, wrist, a, b, arcs, start, count)
             continue
         if state == CellState.EXTREME and i >= 0:
             sign = 1.0
-            at_end = margins[0, JUMP] if i == JUMP else row_margin(task, paths[1], row, wrist, i)
+            at_end = margins[left, JUMP]
+            if i != JUMP:
+                at_end = row_margin(task, paths[left], row, wrist, i)
             if at_end >= 0.0:
                 sign = -1.0
             where, value = extreme_margin(

@@ -48,3 +48,6 @@ CELL_STACK: Final = 64
 
 ARC_SAMPLES: Final = 720
 """Approach angles on one turn, 0.5 degrees apart, at which effort is drawn."""
+
+SAME_ANGLE_RAD: Final = 1e-12
+"""Approach angles beside a cell that are taken for one [rad]: slopes there are no better known."""

@@ -1,8 +1,9 @@
 """Kernels: cosines and sines of all joints for many angles or retreats at once, and their margins.
 
 Rows of a `turns` array, shape (TURN_ROWS, n): cosine and sine of theta1, 2, 3, of theta4, 5, 6 with
-sin(theta5) >= 0 (wrist 0; the other wrist mirrors them), and both reach margins [m]. Written this
-way round so that loops over n are vectorised: 15 ns a posture instead of 150.
+sin(theta5) >= 0 (wrist 0; the other wrist mirrors them), both reach margins [m], and a row of
+working memory. Written this way round so that loops over n are vectorised, which is to say stored:
+15 ns a posture instead of 150.
 """
 
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
@@ -24,7 +25,8 @@ from solver.kinematics.spherical_wrist import arm_turns, elbow_turns, wrist_turn
 from solver.kinematics.straight_rates import ahead_share, rate_room, swing_room
 from solver.tolerances import SINGULAR_WRIST
 
-TURN_ROWS = 14
+TURN_ROWS = 15
+_WORK = 14
 
 CONSTRAINTS = JUMP + 1
 """Margins of one branch: six joints (cosine form), the reach [m], the shoulder's offset beside the
@@ -48,7 +50,7 @@ def write_turns(task, count, arm, turns):
         count: how many columns are in use.
         arm: twice the shoulder's number plus the elbow's.
         turns: shape (TURN_ROWS, count or more). Given: cosine and sine of the approach angle and
-            the retreat [m] in the first three rows; all rows are written.
+            the retreat [m] in the first three rows; all others are written.
     """
     g, circle = unpack_geometry(task.numbers), unpack_circle(task.numbers)
     shoulder, elbow = arm // 2, 1.0 - 2.0 * (arm % 2)
@@ -96,8 +98,11 @@ def turns_at_angles(task, angles, count, retreat, arm, turns):
 
 @inlined
 def path_columns(rows):
-    """Columns of the turns of a cut-in of that many rows: a multiple of what a vector holds."""
-    return max(16, 8 * ((rows + 7) // 8))
+    """Columns of the turns of a cut-in of that many rows: a multiple of what a vector holds.
+
+    And so many that the vector loop is worth its preparations: 16 columns take twice as long as 24.
+    """
+    return max(24, 8 * ((rows + 7) // 8))
 
 
 @kernel
@@ -150,20 +155,27 @@ def row_margin(task, turns, n, wrist, i):
 @minimum
 def path_margins(task, turns, wrist, margins):
     """Smallest margins over a whole cut-in's columns, into margins, shape (CONSTRAINTS,)."""
-    rows = len(task.retreats)
+    # Columns beyond the cut-in's are the thinning posture's, which is one of its own.
+    columns = turns.shape[1]
     for i in range(6):
         cos = wrist_sign(wrist, i, True) * task.numbers[COS_MIDDLE + i]
         sin = wrist_sign(wrist, i, False) * task.numbers[SIN_MIDDLE + i]
-        least = math.inf
-        for n in range(rows):
-            least = min(least, cos * turns[2 * i, n] + sin * turns[2 * i + 1, n])
-        margins[i] = least - task.numbers[COS_HALF + i]
+        for n in range(columns):
+            turns[_WORK, n] = cos * turns[2 * i, n] + sin * turns[2 * i + 1, n]
+        margins[i] = least_of(turns, _WORK) - task.numbers[COS_HALF + i]
     for i in (REACH, BESIDE):
-        least = math.inf
-        for n in range(rows):
-            least = min(least, turns[6 + i, n])
-        margins[i] = least
+        margins[i] = least_of(turns, 6 + i)
     margins[JUMP] = jump_margin(task, turns, wrist)
+
+
+@inlined
+def least_of(turns, row):
+    """The least value in a row of turns, whose columns are a multiple of 8, four by four."""
+    first, second, third, fourth = turns[row, 0], turns[row, 1], turns[row, 2], turns[row, 3]
+    for n in range(4, turns.shape[1], 4):
+        first, second = min(first, turns[row, n]), min(second, turns[row, n + 1])
+        third, fourth = min(third, turns[row, n + 2]), min(fourth, turns[row, n + 3])
+    return min(min(first, second), min(third, fourth))
 
 
 @inlined
@@ -185,27 +197,29 @@ def jump_margin(task, turns, wrist):
     is left to those who look closer. A joint that is inside its limits in two rows, and outside on
     the short way between them, has jumped as well.
     """
-    steps, least, widest = len(task.retreats) - 1, math.inf, math.inf
+    steps, columns, widest = len(task.retreats) - 1, turns.shape[1], math.inf
     g = unpack_geometry(task.numbers)
-    for n in range(steps + 1):
-        least = min(least, row_room(g, turns, n))
+    for n in range(columns):
+        turns[_WORK, n] = row_room(g, turns, n)
+    least = least_of(turns, _WORK)
     for n in range(steps):
         m = n + 1
-        spacing = task.retreats[n] - task.retreats[m]
+        per_metre = 1.0 / (task.retreats[n] - task.retreats[m])
         sin5, sin5_next = turns[9, n], turns[9, m]
         at4 = swing_room(
             sin5 * turns[6, n], sin5 * turns[7, n],
-            sin5_next * turns[6, m], sin5_next * turns[7, m], spacing,
+            sin5_next * turns[6, m], sin5_next * turns[7, m], per_metre,
         )  # fmt: skip
         at6 = swing_room(
             sin5 * turns[10, n], sin5 * turns[11, n],
-            sin5_next * turns[10, m], sin5_next * turns[11, m], spacing,
+            sin5_next * turns[10, m], sin5_next * turns[11, m], per_metre,
         )  # fmt: skip
         x, x_next = ahead_of_waist(g, turns, n), ahead_of_waist(g, turns, m)
         at1 = swing_room(
-            x * turns[0, n], x * turns[1, n], x_next * turns[0, m], x_next * turns[1, m], spacing
+            x * turns[0, n], x * turns[1, n], x_next * turns[0, m], x_next * turns[1, m], per_metre
         )
-        least = min(min(least, at1), min(at4, at6))
+        turns[_WORK, n] = min(at1, min(at4, at6))
+    least = min(least, least_of(turns, _WORK))
     for n in range(steps):
         widest = min(widest, task.cos_steps[n])
     for i in range(6):

@@ -1,27 +1,21 @@
 """The straight cut-in of a candidate: its rows, its motion as executed, how straight that is."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
 from solver.approach.cut_in.tolerances import (
-    BESIDE_ROW_M,
     DEVIATION_SAMPLES,
-    EVEN_ROWS_M,
-    EXCHANGE_ZOOMS,
-    NEAR_RATE_ROOM,
-    RATE_ROOM_EXCESS,
 )
 from solver.approach.task.candidate import Candidate
-from solver.approach.task.feasibility import retreat_from, retreat_from_many, retreat_reach
+from solver.approach.task.feasibility import retreat_from, retreat_from_many
 from solver.approach.task.task import ApproachTask
-from solver.approach.tolerances import EXCHANGE_DENSITY
+from solver.kinematics.chain_rates import rates_behind
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import forward_kinematics, many_poses, tool_centres
-from solver.kinematics.numerical import postures_behind, rates_behind
+from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.kinematics.straight_rates import rows_rate_room
 from solver.motion.timing import TimedRows, time_cut_in
@@ -32,8 +26,6 @@ from solver.robots.rigid import inverse
 from solver.tolerances import (
     JOINT_RATE_RAD_M,
     LEAST_REFINED_ROWS,
-    LIMIT_EXCESS_RAD,
-    REACH_ROUNDING_M,
     TRAJECTORY_HALVINGS,
     TRAJECTORY_STEP_S,
 )
@@ -208,83 +200,6 @@ def line_deviations(
     along = np.einsum("ink,ni->nk", offsets, directions)
     across = offsets - along * directions.T[:, :, None]
     return np.asarray(np.sqrt(np.max(np.sum(across * across, axis=0), axis=1)))
-
-
-def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
-    """The retreat between two rows at which a cut-in is furthest from feasible, if it is one [m].
-
-    There the wrist centre is out of reach, or a joint is beyond its limits, which are those of the
-    task, less the margin asked for, or else one turns faster than JOINT_RATE_RAD_M.
-    """
-    robot, tool, branch = task.robot, task.tool, candidate.branch
-
-    def reach(retreats: Array) -> Array:
-        return _reach(task, candidate, retreats)
-
-    def inside(retreats: Array) -> Array:
-        return np.asarray(task.inside(_postures(task, candidate, retreats)).min(axis=1))
-
-    def slower(retreats: Array) -> Array:
-        return rate_room(robot, tool, branch, _postures(task, candidate, retreats))
-
-    coarse = np.asarray(task.retreats_m)
-    spacing = np.diff(coarse)
-    if np.all(np.abs(spacing - spacing[0]) <= EVEN_ROWS_M):
-        leaves = may_leave_between(_postures(task, candidate, coarse), task.lower, task.upper)
-        room = slower(coarse)
-        falls = any(may_fall_below_zero_between(margin) for margin in (reach(coarse), room))
-        if not (leaves or falls or _dips_beside(coarse, room, slower)):
-            return None
-    for measure, allowed in (
-        (reach, REACH_ROUNDING_M), (inside, LIMIT_EXCESS_RAD / 2), (slower, RATE_ROOM_EXCESS),
-    ):  # fmt: skip
-        retreat, value = _lowest(coarse, measure)
-        if value < -allowed:
-            return retreat
-    return None
-
-
-def _dips_beside(coarse: Array, room: Array, measure: Callable[[Array], Array]) -> bool:
-    """Whether the room of a rate that a row all but uses up goes on falling beside that row.
-
-    A dip that begins in a row may be too narrow for a parabola through three of them.
-    """
-    near = coarse[room < NEAR_RATE_ROOM]
-    beside = np.clip(np.concatenate((near + BESIDE_ROW_M, near - BESIDE_ROW_M)), 0.0, coarse[0])
-    own = np.tile(room[room < NEAR_RATE_ROOM], 2)
-    down = np.argsort(-beside)
-    found = measure(np.append(beside[down], 0.0))[:-1]
-    return bool(np.any(found < own[down] - RATE_ROOM_EXCESS))
-
-
-def _lowest(coarse: Array, measure: Callable[[Array], Array]) -> tuple[float, float]:
-    """The retreat at which a measure of retreats, shape (n,) to (n,), is least, and its value."""
-    shares = np.arange(EXCHANGE_DENSITY)[:, None] / EXCHANGE_DENSITY
-    retreats = np.append((coarse[:-1] + shares * np.diff(coarse)).T.ravel(), 0.0)
-    for _ in range(EXCHANGE_ZOOMS):
-        k = int(measure(retreats).argmin())
-        around = retreats[max(k - 1, 0)], retreats[min(k + 1, len(retreats) - 1)]
-        finer = np.linspace(*around, 2 * EXCHANGE_DENSITY + 1)
-        retreats = np.unique(np.concatenate((retreats, finer)))[::-1]
-    values = measure(retreats)
-    k = int(values.argmin())
-    return float(retreats[k]), float(values[k])
-
-
-def _reach(task: ApproachTask, candidate: Candidate, retreats: Array) -> Array:
-    """How far the wrist centre is inside the reach at each retreat, shape (n,) [m].
-
-    Infinite for an arm without a closed form, whose postures miss the line where they do not reach.
-    """
-    robot, tool = task.robot, task.tool
-    margins, posture = np.full(len(retreats), np.inf), np.asarray(candidate.thinning_joints)
-    if candidate.branch is None:
-        return margins
-    if (rail := rail_of(robot, tool)) is not None:
-        robot, posture = rail.arm_at(float(posture[0])), posture[1:]
-    pose = inverse(robot.mount) @ forward_kinematics(robot, tool, posture)
-    retreat_reach(wrist_geometry(robot, tool), pose, candidate.branch, retreats, margins)
-    return margins
 
 
 def rate_room(robot: Robot, tool: Tool, branch: int | None, rows: Array) -> Array:

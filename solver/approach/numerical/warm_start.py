@@ -10,6 +10,7 @@ from solver.approach.numerical.sweep import apart, arrivals_at, from_all_starts
 from solver.approach.numerical.tolerances import NUMERICAL_STARTS, SAME_OPTIMUM_RAD
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import ApproachTask
+from solver.kinematics.chain_rates import rates_behind
 from solver.kinematics.forward import forward_kinematics, jacobian
 from solver.kinematics.numerical import (
     chain_of,
@@ -17,7 +18,6 @@ from solver.kinematics.numerical import (
     locate,
     polish,
     postures_behind,
-    rates_behind,
 )
 from solver.problem.effort import posture_effort
 from solver.problem.solution import Reason

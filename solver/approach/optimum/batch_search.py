@@ -81,7 +81,7 @@ def write_path(task, angle, branch, sent, work, path):
 def dips_beside(task, angle, arm, room):
     """Whether the room of a rate that a row all but uses up goes on falling beside that row.
 
-    See `solver.approach.cut_in.cut_in.broken_between`, which looks for the same.
+    See `solver.approach.cut_in.broken_between_rows`, which looks for the same.
     """
     for n in range(len(room)):
         if room[n] >= NEAR_RATE_ROOM:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.approach.arcs.arcs import task_arcs
-from solver.approach.cut_in.cut_in import broken_between
+from solver.approach.cut_in.broken_between_rows import broken_between
 from solver.approach.refusal.displacement_search import nearest_of_all
 from solver.approach.refusal.offered import offer_holds
 from solver.approach.refusal.tolerances import (

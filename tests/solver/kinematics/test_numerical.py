@@ -5,7 +5,7 @@ from solver import Robot, load_robot
 from solver.approach.cut_in.cut_in import retreat_rows
 from solver.kinematics import numerical
 from solver.kinematics.forward import forward_kinematics, jacobian
-from solver.kinematics.numerical import chain_of, postures_behind, rates_behind
+from solver.kinematics.numerical import chain_of, postures_behind
 from solver.kinematics.spherical_wrist import inverse_kinematics
 from tests.solver.kinematics.arms import seven_joints, ur5
 
@@ -66,14 +66,3 @@ def test_continuation_finds_the_branch_that_the_closed_form_has() -> None:
         np.testing.assert_allclose(postures_behind(robot, tool, q, retreats), exact, atol=1e-8)
         compared += 1
     assert compared >= 40
-
-
-@pytest.mark.parametrize("name", ["tabletop", "puma560"])
-def test_rates_behind_a_posture_are_the_differences_of_its_rows(name: str) -> None:
-    robot = load_robot(name)
-    tool, q = robot.tools[0], np.asarray(robot.home_joints) + 0.3
-    retreats = np.linspace(0.04, 0.0, 401)
-    rows = postures_behind(robot, tool, q, retreats)
-    rates = rates_behind(robot, tool, rows)
-    differences = np.abs(rows[2:] - rows[:-2]) / (retreats[:-2] - retreats[2:])[:, None]
-    np.testing.assert_allclose(rates[1:-1], differences, rtol=1e-3, atol=1e-4)

@@ -5,7 +5,7 @@ import pytest
 
 from bench.order_references import greedy_effort
 from solver import Options, Plan, Problem, Robot, Target, solve, verify_plan
-from solver.approach.cut_in.cut_in import broken_between
+from solver.approach.cut_in.broken_between_rows import broken_between
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.methods.semi_analytic import solve_ssas

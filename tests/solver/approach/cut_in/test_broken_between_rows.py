@@ -1,7 +1,8 @@
 import numpy as np
 
 from solver import Options, Problem, Robot, Target
-from solver.approach.cut_in.cut_in import broken_between, rate_room, retreat_rows
+from solver.approach.cut_in.broken_between_rows import broken_between
+from solver.approach.cut_in.cut_in import rate_room, retreat_rows
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 
