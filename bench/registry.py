@@ -54,6 +54,7 @@ _ALL = (
     Subject("optimal", "Order `optimal`, against longer searches"),
     Subject("savings", "Effort saved"),
     Subject("certificate", "Proven bounds"),
+    Subject("refusals", "Refusals explained"),
     Subject("large_batch", "100,000 targets"),
     Subject("second_process", "Start of a second process"),
     Subject("thesis", "Beside the thesis: data set 3"),

@@ -15,9 +15,11 @@ import re
 import sys
 import tempfile
 from pathlib import Path
+from typing import cast
 
 import llvmlite.binding as llvm
 import numba
+import numpy as np
 from numba.core import config
 
 _SOLVER = Path(__file__).parent
@@ -77,3 +79,10 @@ nothing, the compiler may take them in any order and several at once. Sums stay 
 
 inlined = numba.njit(error_model="numpy", inline="always")
 """For the arithmetic of inner loops: without a call in it a loop over arrays is vectorised."""
+
+NONE_YET = cast(int, np.int64(0))
+"""What a count or a number begins with that is handed on. An integer in the code is a type of its
+own to Numba, a literal, for which it compiles what is called once more."""
+
+YES, NO = np.bool_(True), np.bool_(False)
+"""The same of what is true or not."""

@@ -60,24 +60,31 @@ def posture_rates(chain, q, free, frames, columns, rates):
     n = len(q)
     locate(chain, q, frames)
     fill_jacobian(chain, frames, columns)
-    moving = np.flatnonzero(free)
-    gram = np.empty((len(moving), len(moving)))
-    right, solution = np.zeros(len(moving)), np.empty(len(moving))
-    for i in range(len(moving)):
+    # What stands still has an equation of its own, rate = 0.
+    gram, right, solution = np.empty((n, n)), np.empty(n), np.empty(n)
+    for i in range(n):
+        right[i] = 0.0
         for row in range(3):
-            right[i] += columns[row, moving[i]] * frames[n, row, 2]
+            right[i] += free[i] * columns[row, i] * frames[n, row, 2]
         for j in range(i + 1):
-            gram[i, j] = 0.0
+            gram[i, j] = 1.0 - free[i] if i == j else 0.0
             for row in range(6):
-                gram[i, j] += columns[row, moving[i]] * columns[row, moving[j]]
+                gram[i, j] += free[i] * columns[row, i] * free[j] * columns[row, j]
     solve_gram(gram, right, solution)
-    rates[:] = 0.0
     fastest = 0.0
-    for i in range(len(moving)):
-        joint = moving[i]
-        rates[joint] = abs(solution[i])
-        fastest = max(fastest, chain.turning[joint] * rates[joint])
+    for i in range(n):
+        rates[i] = abs(solution[i])
+        fastest = max(fastest, chain.turning[i] * rates[i])
     return fastest
+
+
+@kernel
+def evenly(begin, end, count):
+    """Numbers from begin to end, both included, shape (count,)."""
+    numbers = np.empty(count)
+    for i in range(count):
+        numbers[i] = begin + (end - begin) * (i / (count - 1))
+    return numbers
 
 
 @kernel
@@ -138,7 +145,7 @@ def fastest_behind(chain, thinning, free, standoff, count, screened):
     position, axes = frames[n, :3, 3].copy(), frames[n, :3, :3].copy()
     rows = np.empty((count, n))
     rows[-1] = thinning
-    retreats = np.linspace(standoff, 0.0, count)
+    retreats = evenly(standoff, 0.0, count)
     follow_with(chain, position, axes, free, retreats, rows)
     pieces = np.empty((RATE_PIECES + 1, n))
     near, fastest, rate_there = thinning.copy(), 0.0, -1.0
@@ -149,7 +156,7 @@ def fastest_behind(chain, thinning, free, standoff, count, screened):
         if travel <= screened:
             continue
         pieces[-1] = rows[k + 1]
-        between = np.linspace(retreats[k], retreats[k + 1], RATE_PIECES + 1)
+        between = evenly(retreats[k], retreats[k + 1], RATE_PIECES + 1)
         follow_with(chain, position, axes, free, between, pieces)
         for i in range(RATE_PIECES + 1):
             rate = posture_rates(chain, pieces[i], free, frames, columns, scratch)
@@ -161,7 +168,7 @@ def fastest_behind(chain, thinning, free, standoff, count, screened):
         if rate_there < 0.0:
             break
         pieces[-1] = near
-        between = np.linspace(begin, end, RATE_PIECES + 1)
+        between = evenly(begin, end, RATE_PIECES + 1)
         follow_with(chain, position, axes, free, between, pieces)
         best, highest = 0, -1.0
         for i in range(RATE_PIECES + 1):

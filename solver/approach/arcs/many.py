@@ -5,7 +5,8 @@
 import numpy as np
 
 from solver.approach.arcs.roots import arc_scratch
-from solver.approach.arcs.search import ARC_COLUMNS, MOST_ARCS, find_arcs
+from solver.approach.arcs.search import find_arcs
+from solver.approach.arcs.splitting import ARC_COLUMNS, MOST_ARCS
 from solver.approach.task.packed import PackedTask
 from solver.compiled import kernel
 

@@ -24,7 +24,7 @@ from solver.approach.uncertainty.robust_parts import (
     robust_parts,
     robust_work,
 )
-from solver.compiled import kernel
+from solver.compiled import NO, NONE_YET, kernel
 
 
 @kernel
@@ -45,7 +45,7 @@ def cheapest_at_level(task, scratch, work, needed, best):
         waiting -= 1
         arm, wrist, k = cells[waiting]
         own = 2 * arm + wrist
-        for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, 0, 0)):
+        for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, NONE_YET, NONE_YET)):
             low, high = pieces[n, 1], pieces[n, 2]
             low_cusp, high_cusp = at_cusp(pieces[n, 3]), at_cusp(pieces[n, 4])
             where, cost, _ = least_effort(
@@ -59,7 +59,7 @@ def cheapest_at_level(task, scratch, work, needed, best):
             for m in range(robust_parts(task, g, own, low, high, needed, work)):
                 where, cost, _ = least_effort(
                     task, samples, cell, own, work.parts[m, 0], work.parts[m, 1],
-                    False, False, best,
+                    NO, NO, best,
                 )  # fmt: skip
                 if cost < best:
                     angle, branch, best = where, own, cost

@@ -24,7 +24,7 @@ from solver.compiled import kernel
 from solver.kinematics.spherical_wrist import wrap
 from solver.robots.model import Array
 
-NO_BRANCH = -1
+NO_BRANCH = np.int64(-1)
 
 
 class PathWork(NamedTuple):

@@ -13,14 +13,15 @@ import numpy as np
 
 from solver.approach.arcs.cells import enters_reach
 from solver.approach.arcs.roots import ARMS, ArcScratch, arc_scratch
-from solver.approach.arcs.search import ARC_COLUMNS, MOST_ARCS, cell_pieces, open_up
+from solver.approach.arcs.search import cell_pieces, open_up
+from solver.approach.arcs.splitting import ARC_COLUMNS, MOST_ARCS
 from solver.approach.arcs.turns import wrist_sign
 from solver.approach.optimum.effort_samples import EffortScratch, effort_scratch
 from solver.approach.optimum.search import least_effort
 from solver.approach.task.constraints import BESIDE, REACH
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
 from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
-from solver.compiled import inlined, kernel
+from solver.compiled import NONE_YET, inlined, kernel
 from solver.kinematics.arctangent import atan2
 from solver.problem.effort import joint_cost
 from solver.robots.model import Array
@@ -66,7 +67,7 @@ def cheapest(task, scratch, best):
         waiting -= 1
         arm, wrist, k = cells[waiting]
         own = 2 * arm + wrist
-        for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, 0, 0)):
+        for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, NONE_YET, NONE_YET)):
             low, high = pieces[n, 1], pieces[n, 2]
             low_cusp, high_cusp = at_cusp(pieces[n, 3]), at_cusp(pieces[n, 4])
             where, cost, looked = least_effort(

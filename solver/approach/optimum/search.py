@@ -33,7 +33,7 @@ from solver.approach.optimum.tolerances import (
 )
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, PackedTask
 from solver.approach.tolerances import ANGLE_STEP_RAD, LEAST_EFFORT_CELLS
-from solver.compiled import kernel
+from solver.compiled import YES, kernel
 from solver.problem.effort import joint_cost
 
 _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
@@ -108,7 +108,7 @@ def optimum_on_arcs(numbers, retreats, cos_steps, sides, branches, lower, upper)
     for n in range(len(branches)):
         task = PackedTask(numbers[sides[n]], retreats, cos_steps)
         where, cost, count = least_effort(
-            task, samples, cell, branches[n], lower[n], upper[n], True, True, best
+            task, samples, cell, branches[n], lower[n], upper[n], YES, YES, best
         )
         refined += count
         if cost < best:

@@ -19,7 +19,7 @@ from solver.approach.task.feasibility import (
     trace,
 )
 from solver.approach.tolerances import ANGLE_STEP_RAD
-from solver.compiled import kernel
+from solver.compiled import NONE_YET, kernel
 from solver.kinematics.spherical_wrist import arm_turns, wrap
 from solver.tolerances import JOINT_RATE_RAD_M
 
@@ -119,7 +119,7 @@ def closest_failure(task, angles, between):
     """
     rows, axes = np.empty((len(task.retreats), 6)), np.empty((3, 3))
     best_stage, best_margin, best_joint, best_row = -1, -math.inf, 0, 0
-    best_branch, best_angle = 0, 0.0
+    best_branch, best_angle = NONE_YET, 0.0
     for arm in range(4):
         for angle in angles:
             # Both wrists of an arm have its reach: most angles fail there, at little cost.

@@ -21,7 +21,7 @@ from solver.approach.refusal.tolerances import (
 from solver.approach.task.constraints import LIMITS, REACH
 from solver.approach.task.feasibility import CutInTask, nearest_turns, posture, tool_axes
 from solver.approach.uncertainty.sensitivity import turned_rates
-from solver.compiled import kernel
+from solver.compiled import NONE_YET, kernel
 from solver.kinematics.arctangent import atan2
 from solver.kinematics.spherical_wrist import arm_turns, elbow_turns, wrap, wrist_turns
 from solver.kinematics.straight_rates import between_rate_room, posture_rate_room
@@ -184,7 +184,7 @@ def rate_constraint(task, origin, x, row, branch, scratch, gradient):
     Writes the gradient, shape (4,), from differences; returns the length [m].
     """
     scale = (task.geometry.a2 + task.geometry.l3) / 2
-    room = rate_room_at(task, origin, x, 0, 0.0, row, branch, scratch)
+    room = rate_room_at(task, origin, x, NONE_YET, 0.0, row, branch, scratch)
     for k in range(4):
         ahead = rate_room_at(task, origin, x, k, NEAREST_DIFFERENCE, row, branch, scratch)
         gradient[k] = scale * (ahead - room) / NEAREST_DIFFERENCE

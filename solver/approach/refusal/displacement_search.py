@@ -36,7 +36,7 @@ from solver.approach.refusal.tolerances import (
 )
 from solver.approach.task.feasibility import fastest_joint, limit_margin, tool_axes, trace
 from solver.approach.uncertainty.displacement import rows_displacement_margin
-from solver.compiled import kernel
+from solver.compiled import NONE_YET, kernel
 
 
 @kernel
@@ -132,7 +132,7 @@ def nearest_of_all(task, spread, best):
     seeds(task, needed, starts)
     rows = np.empty((len(task.retreats), 6))
     calm = calm_reach(task.geometry)
-    found, best_branch, best_x, known = False, 0, np.zeros(4), np.full(4, np.inf)
+    found, best_branch, best_x, known = False, NONE_YET, np.zeros(4), np.full(4, np.inf)
     for _ in range(NEAREST_STARTS):
         branch, part = divmod(int(np.argmin(needed)), SEED_BINS)
         if needed[branch, part] >= SEED_SPREAD * best + SEED_SPREAD_M:

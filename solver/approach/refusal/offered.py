@@ -7,13 +7,14 @@ import math
 import numpy as np
 
 from solver.approach.arcs.roots import arc_scratch
-from solver.approach.arcs.search import ARC_COLUMNS, MOST_ARCS, cell_pieces
+from solver.approach.arcs.search import cell_pieces
+from solver.approach.arcs.splitting import ARC_COLUMNS, MOST_ARCS
 from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
 from solver.approach.refusal.displacement_constraints import copy_at
 from solver.approach.task.feasibility import posture, tool_axes, trace
 from solver.approach.task.packed import COLUMNS, PackedTask
 from solver.approach.tolerances import ARC_CELLS
-from solver.compiled import kernel
+from solver.compiled import NONE_YET, kernel
 from solver.kinematics.spherical_wrist import wrap
 from solver.kinematics.straight_rates import rows_rate_room
 
@@ -27,7 +28,7 @@ def on_an_arc(packed, branch, angle):
     scratch.known_paths[:] = False
     scratch.known_margins[:] = False
     k = int((angle + math.pi) / (2 * math.pi) * ARC_CELLS) % ARC_CELLS
-    pieces = cell_pieces(packed, scratch, branch // 2, branch % 2, k, arcs, 0, 0)
+    pieces = cell_pieces(packed, scratch, branch // 2, branch % 2, k, arcs, NONE_YET, NONE_YET)
     found = False
     for i in range(pieces):
         found = found or arcs[i, 1] <= angle <= arcs[i, 2]

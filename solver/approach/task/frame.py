@@ -75,6 +75,8 @@ def approach_frames(positions: Array, branch_directions: Array) -> tuple[Array, 
         # Taking the component along b away twice leaves rounding errors of rounding errors.
         outward[usable] = _unit(_without(normal, branch[usable]))
         left &= ~usable
+        if not left.any():
+            break
     assert not left.any(), "z and x cannot both be parallel to the branch"
     return branch, outward, _cross(branch, outward)
 

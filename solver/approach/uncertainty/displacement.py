@@ -28,7 +28,7 @@ from solver.approach.uncertainty.tolerances import (
     SCREENED_DISTANCES,
     STRAIGHT_WRIST_PROBES,
 )
-from solver.compiled import kernel
+from solver.compiled import NONE_YET, kernel
 from solver.tolerances import LEAST_DIVISOR
 
 
@@ -62,7 +62,7 @@ def rows_displacement_margin(g, lower, upper, pose, retreats, branch, rows):
         nearest_row[LOWER_5] if nearest[LOWER_5] < nearest[UPPER_5] else nearest_row[UPPER_5]
     )
     position, delta, best_delta = np.empty(3), np.empty(3), np.zeros(3)
-    best, best_row, best_joint = math.inf, 0, 0
+    best, best_row, best_joint = math.inf, NONE_YET, NONE_YET
     for _ in range(LIMITS):
         kind = int(np.argmin(nearest))
         if nearest[kind] > SCREENED_DISTANCES * best:
