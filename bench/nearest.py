@@ -17,9 +17,9 @@ from solver.approach.refusal.displacement_search import nearest_displacement
 from solver.approach.refusal.tolerances import NEAREST_FOUND_SHARE, NEAREST_INSIDE_M
 from solver.approach.task.packed import COLUMNS, PackedTask
 from solver.compiled import kernel
+from solver.kinematics.spherical_wrist import BRANCHES
 
 _POSITION = COLUMNS["position"]
-_BRANCHES = 8
 
 
 @kernel
@@ -30,7 +30,7 @@ def shortest_from_everywhere(task, angles):
     """
     rows, start = np.empty((len(task.retreats), 6)), np.zeros(4)
     known, shortest = np.full(4, np.inf), math.inf
-    for branch in range(_BRANCHES):
+    for branch in range(BRANCHES):
         for angle in angles:
             start[:3], start[3] = 0.0, angle
             feasible, x = nearest_displacement(

@@ -17,8 +17,9 @@ from solver.kinematics.numerical import (
     locate,
     solve_gram,
 )
-from solver.kinematics.tolerances import RATE_PIECES, RATE_ZOOMS
+from solver.kinematics.tolerances import RATE_MISSED, RATE_PIECES, RATE_ZOOMS
 from solver.robots.model import Array, Robot, Tool
+from solver.tolerances import LEAST_DIVISOR
 
 
 def rates_behind(robot: Robot, tool: Tool, rows: Array) -> Array:
@@ -32,7 +33,8 @@ def rates_behind(robot: Robot, tool: Tool, rows: Array) -> Array:
         rows: postures of the cut-in, thinning last, shape (k, n) [rad or m].
 
     Returns:
-        Magnitudes, shape (k, n) [rad/m or m/m]; where the arm is singular, too large ones.
+        Magnitudes, shape (k, n) [rad/m or m/m]; as good as infinite where the arm is
+        singular.
     """
     rates = np.empty(rows.shape)
     rates_of_rows(chain_of(robot, tool), np.ascontiguousarray(rows), rates)
@@ -47,14 +49,15 @@ def rates_of_rows(chain, rows, rates):
     locate(chain, rows[-1], frames)
     free = free_joints(chain, frames, columns)
     for k in range(len(rows)):
-        posture_rates(chain, rows[k], free, frames, columns, rates[k])
+        rates_at(chain, rows[k], free, frames, columns, rates[k])
 
 
 @kernel
-def posture_rates(chain, q, free, frames, columns, rates):
+def rates_at(chain, q, free, frames, columns, rates):
     """Writes the rates in one posture, shape (n,); returns the largest of a joint that turns.
 
-    The least squares solution of J rates = straight ahead, with the joints that are free; frames
+    The least squares solution of J rates = straight ahead, with the joints that are free. Where
+    it does not lead straight ahead, as the arm is singular, rates are as good as infinite. Frames
     and columns are scratch.
     """
     n = len(q)
@@ -71,20 +74,18 @@ def posture_rates(chain, q, free, frames, columns, rates):
             for row in range(6):
                 gram[i, j] += free[i] * columns[row, i] * free[j] * columns[row, j]
     solve_gram(gram, right, solution)
+    leads_ahead = True
+    for row in range(6):
+        left = frames[n, row, 2] if row < 3 else 0.0
+        for i in range(n):
+            left -= free[i] * columns[row, i] * solution[i]
+        # Not met by what is not a number, where the solution overflows.
+        leads_ahead = leads_ahead and abs(left) <= RATE_MISSED
     fastest = 0.0
     for i in range(n):
-        rates[i] = abs(solution[i])
+        rates[i] = abs(solution[i]) if leads_ahead else free[i] / LEAST_DIVISOR
         fastest = max(fastest, chain.turning[i] * rates[i])
     return fastest
-
-
-@kernel
-def evenly(begin, end, count):
-    """Numbers from begin to end, both included, shape (count,)."""
-    numbers = np.empty(count)
-    for i in range(count):
-        numbers[i] = begin + (end - begin) * (i / (count - 1))
-    return numbers
 
 
 @kernel
@@ -123,8 +124,8 @@ def fastest_on_paths(chain, paths, standoff, count, screened):
             travel = turned(chain, path[k], path[k + 1]) * (rows_given - 1) / standoff
             fastest = max(fastest, travel)
         # At the ends a joint may be fast and yet turn little, where it is on its way into a swing.
-        fastest = max(fastest, posture_rates(chain, path[0], free, frames, columns, scratch))
-        fastest = max(fastest, posture_rates(chain, path[-1], free, frames, columns, scratch))
+        fastest = max(fastest, rates_at(chain, path[0], free, frames, columns, scratch))
+        fastest = max(fastest, rates_at(chain, path[-1], free, frames, columns, scratch))
         if rows_given < count or fastest > screened:
             behind = fastest_behind(chain, path[-1], free, standoff, count, screened)
             fastest = max(fastest, behind)
@@ -145,7 +146,7 @@ def fastest_behind(chain, thinning, free, standoff, count, screened):
     position, axes = frames[n, :3, 3].copy(), frames[n, :3, :3].copy()
     rows = np.empty((count, n))
     rows[-1] = thinning
-    retreats = evenly(standoff, 0.0, count)
+    retreats = np.linspace(standoff, 0.0, count)
     follow_with(chain, position, axes, free, retreats, rows)
     pieces = np.empty((RATE_PIECES + 1, n))
     near, fastest, rate_there = thinning.copy(), 0.0, -1.0
@@ -156,10 +157,10 @@ def fastest_behind(chain, thinning, free, standoff, count, screened):
         if travel <= screened:
             continue
         pieces[-1] = rows[k + 1]
-        between = evenly(retreats[k], retreats[k + 1], RATE_PIECES + 1)
+        between = np.linspace(retreats[k], retreats[k + 1], RATE_PIECES + 1)
         follow_with(chain, position, axes, free, between, pieces)
         for i in range(RATE_PIECES + 1):
-            rate = posture_rates(chain, pieces[i], free, frames, columns, scratch)
+            rate = rates_at(chain, pieces[i], free, frames, columns, scratch)
             if rate > rate_there:
                 rate_there = rate
                 begin, end = between[max(i - 1, 0)], between[min(i + 1, RATE_PIECES)]
@@ -168,11 +169,11 @@ def fastest_behind(chain, thinning, free, standoff, count, screened):
         if rate_there < 0.0:
             break
         pieces[-1] = near
-        between = evenly(begin, end, RATE_PIECES + 1)
+        between = np.linspace(begin, end, RATE_PIECES + 1)
         follow_with(chain, position, axes, free, between, pieces)
         best, highest = 0, -1.0
         for i in range(RATE_PIECES + 1):
-            rate = posture_rates(chain, pieces[i], free, frames, columns, scratch)
+            rate = rates_at(chain, pieces[i], free, frames, columns, scratch)
             if rate > highest:
                 highest, best = rate, i
         rate_there = max(rate_there, highest)

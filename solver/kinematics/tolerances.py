@@ -38,3 +38,7 @@ where rows are 2.7 mm apart: a joint that is as fast as it may is so for some 4 
 RATE_ZOOMS: Final = 3
 """How often the fastest of these is closed in on, fourfold each: to 5 um, within which the rate of
 such a joint changes by a millionth."""
+
+RATE_MISSED: Final = 1e-6
+"""How far joints at their rates may miss straight ahead, for a unit of travel [m and rad]: rounding
+makes 1e-8 of rates ten times JOINT_RATE_RAD_M, and next to a singular posture a tenth is missed."""

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
 from solver.approach.cut_in.cut_in import rate_room
+from solver.approach.cut_in.line_behind import LineBehind
 from solver.approach.cut_in.tolerances import (
     BESIDE_ROW_M,
     EVEN_ROWS_M,
@@ -16,15 +16,9 @@ from solver.approach.cut_in.tolerances import (
     RATE_ROOM_EXCESS,
 )
 from solver.approach.task.candidate import Candidate
-from solver.approach.task.feasibility import retreat_from, retreat_reach
 from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import EXCHANGE_DENSITY
-from solver.kinematics.families import rail_of
-from solver.kinematics.forward import forward_kinematics
-from solver.kinematics.numerical import postures_behind
-from solver.kinematics.spherical_wrist import wrist_geometry
-from solver.robots.model import Array, Robot
-from solver.robots.rigid import inverse
+from solver.robots.model import Array
 from solver.tolerances import LIMIT_EXCESS_RAD, REACH_ROUNDING_M
 
 Measure = Callable[[Array, Array], Array]
@@ -37,14 +31,15 @@ def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
     There the wrist centre is out of reach, or a joint is beyond its limits, which are those of the
     task, less the margin asked for, or else one turns faster than JOINT_RATE_RAD_M.
     """
-    behind = _Behind(task, candidate)
+    line = LineBehind(task.robot, task.tool, candidate.thinning_joints, candidate.branch)
+    behind = _Behind(task, line)
     coarse = np.asarray(task.retreats_m)
     spacing = np.diff(coarse)
     if np.all(np.abs(spacing - spacing[0]) <= EVEN_ROWS_M) and not _suspicious(behind, coarse):
         return None
     shares = np.arange(EXCHANGE_DENSITY)[:, None] / EXCHANGE_DENSITY
     dense = np.append((coarse[:-1] + shares * np.diff(coarse)).T.ravel(), 0.0)
-    rows = behind.rows(dense)
+    rows = behind.line.rows(dense)
     for measure, allowed in (
         (behind.reach, REACH_ROUNDING_M),
         (behind.inside, LIMIT_EXCESS_RAD / 2),
@@ -61,54 +56,14 @@ def broken_between(task: ApproachTask, candidate: Candidate) -> float | None:
 
 @dataclass(frozen=True)
 class _Behind:
-    """The postures straight behind a candidate's thinning posture."""
+    """What is looked at between rows of a cut-in, at retreats of shape (n,) and postures there."""
 
     task: ApproachTask
-    candidate: Candidate
-
-    @cached_property
-    def _rail_m(self) -> float | None:
-        on_rail = rail_of(self.task.robot, self.task.tool) is not None
-        return float(self.candidate.thinning_joints[0]) if on_rail else None
-
-    @cached_property
-    def _arm(self) -> Robot:
-        rail = rail_of(self.task.robot, self.task.tool)
-        return self.task.robot if rail is None else rail.arm_at(self._rail_m or 0.0)
-
-    @cached_property
-    def _thinning(self) -> Array:
-        joints = np.asarray(self.candidate.thinning_joints, dtype=np.float64)
-        return joints if self._rail_m is None else joints[1:]
-
-    @cached_property
-    def _pose(self) -> Array:
-        pose = forward_kinematics(self._arm, self.task.tool, self._thinning)
-        return np.ascontiguousarray(inverse(self._arm.mount) @ pose)
-
-    def rows(self, retreats: Array) -> Array:
-        """Postures at retreats, which descend to 0, shape (n,) [m]; shape (n, joints)."""
-        robot, tool, branch = self._arm, self.task.tool, self.candidate.branch
-        if branch is None:
-            return postures_behind(robot, tool, self._thinning, retreats)
-        rows = np.empty((len(retreats), len(self._thinning)))
-        rows[-1] = self._thinning
-        retreat_from(wrist_geometry(robot, tool), self._pose, branch, retreats, rows)
-        if self._rail_m is None:
-            return rows
-        return np.column_stack((np.full(len(rows), self._rail_m), rows))
+    line: LineBehind
 
     def reach(self, retreats: Array, _: Array) -> Array:
-        """How far the wrist centre is inside the reach [m].
-
-        Infinite for an arm without a closed form, whose postures miss the line where they do not
-        reach.
-        """
-        margins = np.full(len(retreats), np.inf)
-        if self.candidate.branch is not None:
-            geometry = wrist_geometry(self._arm, self.task.tool)
-            retreat_reach(geometry, self._pose, self.candidate.branch, retreats, margins)
-        return margins
+        """How far the wrist centre is inside the reach [m]."""
+        return self.line.reach(retreats)
 
     def inside(self, _: Array, rows: Array) -> Array:
         """How far the joint that is nearest to a limit is inside it [rad or m]."""
@@ -116,12 +71,12 @@ class _Behind:
 
     def room(self, _: Array, rows: Array) -> Array:
         """What joints are short of the highest rate, see `rate_room`."""
-        return rate_room(self.task.robot, self.task.tool, self.candidate.branch, rows)
+        return rate_room(self.line.robot, self.line.tool, self.line.branch, rows)
 
 
 def _suspicious(behind: _Behind, coarse: Array) -> bool:
     """Whether rows that are even give a reason to look between them."""
-    task, rows = behind.task, behind.rows(coarse)
+    task, rows = behind.task, behind.line.rows(coarse)
     room = behind.room(coarse, rows)
     return (
         may_leave_between(rows, task.lower, task.upper)
@@ -143,7 +98,7 @@ def _dips_beside(behind: _Behind, coarse: Array, room: Array) -> bool:
     own = np.tile(room[room < NEAR_RATE_ROOM], 2)
     down = np.argsort(-beside)
     retreats = np.append(beside[down], 0.0)
-    found = behind.room(retreats, behind.rows(retreats))[:-1]
+    found = behind.room(retreats, behind.line.rows(retreats))[:-1]
     return bool(np.any(found < own[down] - RATE_ROOM_EXCESS))
 
 
@@ -165,7 +120,7 @@ def _lowest(behind: _Behind, dense: Array, values: Array, measure: Measure) -> t
         finer = np.linspace(*around, 2 * EXCHANGE_DENSITY + 1)
         # Joints are on the turn that the rows before the target decide.
         retreats = np.unique(np.concatenate((coarse, finer)))[::-1]
-        found = measure(retreats, behind.rows(retreats))
+        found = measure(retreats, behind.line.rows(retreats))
         k = int(found.argmin())
         if found[k] < least:
             best, least = float(retreats[k]), float(found[k])

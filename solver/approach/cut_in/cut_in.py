@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.approach.cut_in.line_behind import LineBehind
 from solver.approach.cut_in.tolerances import (
     DEVIATION_SAMPLES,
 )
 from solver.approach.task.candidate import Candidate
-from solver.approach.task.feasibility import retreat_from, retreat_from_many
+from solver.approach.task.feasibility import retreat_from_many
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.chain_rates import rates_behind
 from solver.kinematics.families import rail_of
 from solver.kinematics.forward import forward_kinematics, many_poses, tool_centres
-from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.kinematics.straight_rates import rows_rate_room
 from solver.motion.timing import TimedRows, time_cut_in
@@ -55,9 +55,10 @@ def build_cut_in(task: ApproachTask, candidate: Candidate) -> CutIn:
     Straightness that the finest sampling does not reach is left for the verifier to refuse.
     """
     options = task.options
+    behind = LineBehind(task.robot, task.tool, candidate.thinning_joints, candidate.branch)
 
     def path(distances: Array) -> Array:
-        return _postures(task, candidate, options.standoff_m - distances)
+        return behind.rows(options.standoff_m - distances)
 
     rows = path(np.linspace(0.0, options.standoff_m, options.path_points))
     pose = forward_kinematics(task.robot, task.tool, rows[-1])
@@ -98,18 +99,7 @@ def retreat_rows(
     Returns:
         Shape (rows, joints), without turns between rows; the last row is `thinning` itself.
     """
-    retreats, posture = np.ascontiguousarray(retreats), np.asarray(thinning, dtype=np.float64)
-    if branch is None:
-        return postures_behind(robot, tool, posture, retreats)
-    if (rail := rail_of(robot, tool)) is not None:
-        arm = rail.arm_at(float(posture[0]))
-        rows = retreat_rows(arm, tool, posture[1:], branch, retreats)
-        return np.column_stack((np.full(len(rows), posture[0]), rows))
-    rows = np.empty((len(retreats), len(robot.joints)))
-    rows[-1] = posture
-    pose = inverse(robot.mount) @ forward_kinematics(robot, tool, posture)
-    retreat_from(wrist_geometry(robot, tool), pose, branch, retreats, rows)
-    return rows
+    return LineBehind(robot, tool, thinning, branch).rows(retreats)
 
 
 def refined_rows(
@@ -216,9 +206,3 @@ def rate_room(robot: Robot, tool: Tool, branch: int | None, rows: Array) -> Arra
     room = np.empty(len(rows))
     rows_rate_room(wrist_geometry(robot, tool), rows, room)
     return room
-
-
-def _postures(task: ApproachTask, candidate: Candidate, retreats: Array) -> Array:
-    return retreat_rows(
-        task.robot, task.tool, candidate.thinning_joints, candidate.branch, retreats
-    )

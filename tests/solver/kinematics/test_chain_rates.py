@@ -6,6 +6,7 @@ from solver import Robot, load_robot
 from solver.kinematics.chain_rates import fastest_on_paths, rates_behind
 from solver.kinematics.forward import forward_kinematics, jacobian
 from solver.kinematics.numerical import chain_of, postures_behind
+from solver.tolerances import JOINT_RATE_RAD_M
 from tests.solver.kinematics.arms import seven_joints, ur5
 
 Array = NDArray[np.float64]
@@ -56,3 +57,13 @@ def test_the_fastest_place_is_found_whatever_rows_tell_of_it(tabletop: Robot, co
         assert found == pytest.approx(truth, rel=1e-4)
         compared += 1
     assert compared >= 5
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-15, 1e-12, 1e-9, 1e-7])
+@pytest.mark.parametrize("name", ["tabletop", "puma560"])
+def test_no_joint_is_slow_beside_a_straight_wrist(name: str, apart: float) -> None:
+    """The forearm turns, and joints 4 and 6 would have to make up for it in no distance."""
+    robot = load_robot(name)
+    for q in np.random.default_rng(5).uniform(robot.lower, robot.upper, (200, 6)):
+        q[4] = apart - robot.joints[4].offset_rad
+        assert rates_behind(robot, robot.tools[0], q[None]).max() > JOINT_RATE_RAD_M
