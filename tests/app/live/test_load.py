@@ -1,50 +1,44 @@
 """Little of the mixed load of `python -m bench.service.load`."""
 
 import asyncio
-import math
-import time
+from collections.abc import Mapping
 from urllib.parse import urlsplit
 
 import pytest
 
 from bench.service.client import Client
-from bench.service.memory import sample
+from bench.service.memory import resident_kib, tree
 from bench.service.mixed import Tally, mixed_load
 from tests.app.conftest import Server
 
-SETTLED_S = 40
-"""How long memory is looked at."""
-MOST_GROWTH_KIB = 300 * 1024
+# Work, and not time, which says little on a busy machine: first until all processes are there and
+# their heaps and caches are filled, then so much that what is kept of each request would show.
+FILLED = {"plan": 20, "read": 10, "batch": 5, "job ended": 1, "provoked": 1}
+AND_THEN = {"plan": 60, "read": 50, "batch": 20, "provoked": 10}
+MOST_GROWTH_KIB = 60 * 1024
+"""Of all processes together; 7 to 13 MiB are found."""
 
 
-def settled(tally: Tally) -> bool:
-    """Whether heaps and caches are filled, and all processes there, however slow the machine."""
-    least = {"plan": 20, "read": 10, "batch": 3, "job": 3, "provoked": 1}
+def came_to(tally: Tally, least: Mapping[str, int]) -> bool:
     return all(tally.done[what] >= count for what, count in least.items())
 
 
 @pytest.mark.long
 def test_mixed_load(server: Server) -> None:
-    samples: list[tuple[float, int]] = []
-    settled_after = math.inf
+    filled_kib: list[int] = []
 
-    async def load() -> None:
+    def goes_on(tally: Tally) -> bool:
+        if not filled_kib and came_to(tally, FILLED):
+            filled_kib.append(resident_kib(tree(server.process.pid)))
+        return not tally.errors and not came_to(tally, AND_THEN)
+
+    async def load() -> Tally:
         client = Client("127.0.0.1", urlsplit(server.url).port or 0)
-        sampling = asyncio.create_task(sample(server.process.pid, 2, samples))
-        began = time.monotonic()
+        try:
+            return await mixed_load(client, goes_on, 1, compare=False)
+        finally:
+            client.close()
 
-        def goes_on(tally: Tally) -> bool:
-            nonlocal settled_after
-            elapsed_s = time.monotonic() - began
-            if settled(tally):
-                settled_after = min(settled_after, elapsed_s)
-            return not tally.errors and elapsed_s < settled_after + SETTLED_S
-
-        tally = await mixed_load(client, goes_on, 1, compare=False)
-        sampling.cancel()
-        client.close()
-        assert tally.errors == 0, tally.notes
-
-    asyncio.run(load())
-    looked_at = [kib for at, kib in samples if at > settled_after]
-    assert looked_at[-1] - looked_at[0] < MOST_GROWTH_KIB, samples
+    tally = asyncio.run(load())
+    assert tally.errors == 0, tally.notes
+    assert resident_kib(tree(server.process.pid)) - filled_kib[0] < MOST_GROWTH_KIB

@@ -167,7 +167,7 @@ def test_stop_under_load_cuts_nothing(tmp_path: Path, request_body: Body) -> Non
     targets = request_body["targets"]
     body = {**request_body, "options": {"method": "ncos", "include": []}}
     body["targets"] = [
-        {**target, "id": f"{copy}-{target['id']}"} for copy in range(60) for target in targets
+        {**target, "id": f"{copy}-{target['id']}"} for copy in range(20) for target in targets
     ]
     codes: list[int] = []
     begun = threading.Event()
