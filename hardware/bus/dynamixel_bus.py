@@ -7,6 +7,7 @@ error bit, bounded repetition.
 
 import errno
 import os
+import select
 import termios
 import time
 from collections import Counter
@@ -158,7 +159,6 @@ class _Port(PortHandler):  # type: ignore[misc]
             self.port_name,
             self.baudrate,
             timeout=SERIAL_POLL_S,
-            write_timeout=WRITE_TIMEOUT_S,
             exclusive=True,
         )
         self.is_open = True
@@ -177,6 +177,17 @@ class _Port(PortHandler):  # type: ignore[misc]
         found = bytes(self.ser.read(min(length, self._arrived)))
         self._arrived -= len(found)
         return found
+
+    def writePort(self, packet: list[int]) -> int:
+        # pyserial looks at its clock even when all is written, and calls a port lost over which
+        # this process stood still.
+        rest = memoryview(bytes(packet))
+        while rest:
+            _, writable, _ = select.select([], [self.ser], [], WRITE_TIMEOUT_S)
+            if not writable:
+                raise serial.SerialTimeoutException(f"it takes no bytes for {WRITE_TIMEOUT_S:g} s")
+            rest = rest[os.write(self.ser.fileno(), rest) :]
+        return len(packet)
 
     def getCurrentTime(self) -> float:
         return time.monotonic() * 1000

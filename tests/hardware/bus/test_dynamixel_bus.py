@@ -12,7 +12,7 @@ import pytest
 
 from hardware.bus.dynamixel_bus import DynamixelBus
 from hardware.exceptions import BusLost, CorruptPackets, PortUnavailable, ServoMissing
-from hardware.tolerances import REPLY_TIMEOUT_S
+from hardware.tolerances import REPLY_TIMEOUT_S, WRITE_TIMEOUT_S
 from tests.contracts.test_bus import servo_bus
 
 
@@ -64,6 +64,41 @@ def test_an_answer_that_came_while_the_program_stood_still_is_read(
     monkeypatch.setattr(port, "setPacketTimeout", begin_to_wait_and_stand_still)
     assert line.bus.read(41, 0, 2).data == bytes((64, 0))
     assert not line.bus.retries
+
+
+def test_a_program_that_stands_still_while_it_writes_has_not_lost_the_bus(
+    line: Line, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = os.write
+
+    def write_and_stand_still(descriptor: int, data: bytes) -> int:
+        monkeypatch.setattr(os, "write", write)
+        written = write(descriptor, data)
+        time.sleep(1.2 * WRITE_TIMEOUT_S)
+        return written
+
+    monkeypatch.setattr(os, "write", write_and_stand_still)
+    line.bus.sync_write(30, {41: bytes((0, 2))})
+    monkeypatch.setattr(os, "write", write_and_stand_still)
+    assert line.bus.read(41, 30, 2).data == bytes((0, 2))
+
+
+def test_a_port_that_takes_no_bytes_is_a_lost_bus() -> None:
+    port, client = os.openpty()
+    bus = DynamixelBus(os.ttyname(client))
+
+    def write_on() -> None:
+        # Nobody reads at the other end, where a pseudo-terminal keeps some kilobytes.
+        for _ in range(10_000):
+            bus.sync_write(30, {41: bytes((0, 2))})
+
+    try:
+        with pytest.raises(BusLost, match="takes no bytes"):
+            write_on()
+    finally:
+        bus.close()
+        os.close(port)
+        os.close(client)
 
 
 def test_a_tenth_of_corrupt_packets_is_survived(line: Line) -> None:
