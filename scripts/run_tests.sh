@@ -58,7 +58,7 @@ computing=$(mktemp)
 trap 'rm -f "$waiting" "$computing"' EXIT
 failed=0
 
-yielding 14 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
+yielding 17 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
     tests/app tests/deploy tests/docs >"$waiting" 2>&1 &
 services=$!
 yielding 19 "$pytest" -n 2 --dist loadfile -m "not alone" tests --ignore tests/app --ignore tests/deploy \

@@ -130,7 +130,6 @@ class _Visitor:
             if not self._tally.expect("job read", answer, 200):
                 return
             if orjson.loads(answer.body)["status"] not in ("queued", "running"):
-                self._tally.done["job ended"] += 1
                 return
             await asyncio.sleep(10 * PAUSE_S)
 
