@@ -6,10 +6,12 @@ time.
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.approach.cut_in.cut_in import many_retreat_rows
 from solver.approach.optimum.batch import (
     Optima,
     chosen_paths,
@@ -18,16 +20,21 @@ from solver.approach.optimum.batch import (
     raised_optima,
 )
 from solver.approach.optimum.batch_search import NO_BRANCH
+from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.packing import packed_targets
+from solver.approach.task.task import approach_task
 from solver.approach.uncertainty.levels import margin_levels
 from solver.approach.uncertainty.robustness import displacement_margins
 from solver.kinematics.families import has_closed_form, rail_of
+from solver.methods.semi_analytic import OPTIMUM, solve_ssas
 from solver.problem.problem import Problem
+from solver.problem.retreats import even_retreats
 from solver.problem.solution import Approach, SolverReport
 from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.sequencing.sequence import Stop
+from solver.solving.one_target import solve_between_rows_too
 from solver.tolerances import BATCH_PART
 from solver.verification.many import ProposedPaths, judge_many
 
@@ -99,7 +106,7 @@ def plan_many(problem: Problem, targets: Sequence[Target]) -> dict[str, Approach
         started = time.perf_counter()
         proposed, refined = _proposed(problem, part)
         elapsed_s = (time.perf_counter() - started) / len(part)
-        reports = [SolverReport(METHOD, elapsed_s, cells, "optimum_of_arcs") for cells in refined]
+        reports = [SolverReport(METHOD, elapsed_s, cells, OPTIMUM) for cells in refined]
         planned |= judge_many(problem, proposed, reports)
     return planned
 
@@ -109,48 +116,82 @@ def _proposed(problem: Problem, targets: Sequence[Target]) -> tuple[ProposedPath
     positions, directions = _vectors(targets)
     optima = closed_form_optima(problem, positions, directions, np.asarray(problem.start))
     levels = [margin_levels(problem.options, target) for target in targets]
+    margins = None
     if max(map(max, levels)) > 0.0:
         optima, margins = raised_optima(problem, positions, directions, levels, optima)
-    else:
-        margins = _margins(problem, optima.branches, optima.paths)
     leaves = _leave_between_rows(problem, positions, directions, optima)
-    kept = np.flatnonzero((optima.branches != NO_BRANCH) & ~leaves)
+    optima = _exchanged(problem, targets, optima, leaves)
+    kept = np.flatnonzero(optima.branches != NO_BRANCH)
+    branches, paths = optima.branches[kept], optima.paths[kept]
+    if margins is None or leaves.any():
+        margins = _margins(problem, branches, paths)
+    else:
+        margins = margins[kept]
     proposed = ProposedPaths(
         target_ids=[targets[k].id for k in kept.tolist()],
         positions=positions[kept],
         directions=directions[kept],
         angles_rad=np.array([signed_angle(angle) for angle in optima.angles_rad[kept].tolist()]),
         tool_sides=optima.tool_sides[kept],
-        branches=optima.branches[kept],
-        paths=optima.paths[kept],
+        branches=branches,
+        paths=paths,
         references=np.broadcast_to(np.asarray(problem.start), (len(kept), 6)),
-        displacement_margins_m=margins[kept],
+        displacement_margins_m=margins,
     )
     return proposed, optima.refined[kept].tolist()
 
 
 def _margins(problem: Problem, branches: NDArray[np.int64], paths: Array) -> Array:
-    """How far n targets may move, shape (n,) [m]; not a number where there is no cut-in."""
-    margins, known = np.full(len(paths), np.nan), branches != NO_BRANCH
-    margins[known] = displacement_margins(
-        problem.robot,
-        problem.mounted_tool,
-        problem.options,
-        branches[known],
-        np.ascontiguousarray(paths[known, -1]),
-    )
-    return margins
+    """How far the targets of n cut-ins may move, shape (n,) [m]."""
+    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
+    thinning = np.ascontiguousarray(paths[:, -1])
+    return displacement_margins(robot, tool, options, branches, thinning)
 
 
 def _leave_between_rows(
     problem: Problem, positions: Array, directions: Array, optima: Optima
 ) -> NDArray[np.bool_]:
     """Whether a cut-in may be infeasible between what is looked at, on a second look too, (n,)."""
-    leaves = optima.suspicious.copy()
+    leaves: NDArray[np.bool_] = optima.suspicious & (optima.branches != NO_BRANCH)
     again = np.flatnonzero(leaves)
     if len(again):
         leaves[again] = finer_paths(problem, positions, directions, optima, again).suspicious
     return leaves
+
+
+def _exchanged(
+    problem: Problem, targets: Sequence[Target], optima: Optima, leaves: NDArray[np.bool_]
+) -> Optima:
+    """The optima with those that leave between rows solved again; without a branch where none is.
+
+    One by one, as each has rows of its own.
+    """
+    which = np.flatnonzero(leaves)
+    if not len(which):
+        return optima
+    angles, sides = optima.angles_rad.copy(), optima.tool_sides.copy()
+    branches, paths = optima.branches.copy(), optima.paths.copy()
+    branches[which] = NO_BRANCH
+    for k in which.tolist():
+        task = approach_task(problem, targets[k], problem.start)
+        angle, side = signed_angle(angles[k]), int(sides[k])
+        known = Candidate(
+            angle, side, int(optima.branches[k]), tuple(paths[k, -1]), float(optima.efforts[k]),
+            int(optima.refined[k]), OPTIMUM,
+        )  # fmt: skip
+        found, _ = solve_between_rows_too(task, solve_ssas, known)
+        if isinstance(found, Candidate) and found.branch is not None:
+            angles[k], sides[k] = found.approach_angle_rad, found.tool_side
+            branches[k], paths[k, -1] = found.branch, found.thinning_joints
+    held = which[branches[which] != NO_BRANCH]
+    paths[held] = many_retreat_rows(
+        problem.robot,
+        problem.mounted_tool,
+        paths[held, -1],
+        branches[held],
+        even_retreats(problem.options),
+    )
+    return replace(optima, angles_rad=angles, tool_sides=sides, branches=branches, paths=paths)
 
 
 def _vectors(targets: Sequence[Target]) -> tuple[Array, Array]:

@@ -84,7 +84,7 @@ def _is_planned(approach: Approach) -> bool:
 
 
 def solve_between_rows_too(
-    task: ApproachTask, solve: Solve
+    task: ApproachTask, solve: Solve, first: Candidate | None = None
 ) -> tuple[Candidate | Reason, ApproachTask]:
     """A method's answer, with limits that hold between the rows of the cut-in as well.
 
@@ -92,9 +92,14 @@ def solve_between_rows_too(
 
     A posture between two rows that breaks a limit becomes a row, and the target is solved again
     (the exchange method of semi-infinite programming).
+
+    Args:
+        task: the task.
+        solve: the method.
+        first: what it answers for the task as it is, if that is known.
     """
     for _ in range(EXCHANGE_ROUNDS):
-        outcome = solve(task)
+        outcome, first = first or solve(task), None
         if isinstance(outcome, Reason):
             return outcome, task
         retreat = broken_between(task, outcome)
