@@ -20,6 +20,7 @@ from solver.robots.model import Array
 from solver.tolerances import LEAST_REFINED_ROWS, TRAJECTORY_HALVINGS
 from solver.verification.path_residuals import (
     ClaimedPaths,
+    Residuals,
     branch_residuals,
     deviation_residuals,
     displacement_residuals,
@@ -57,6 +58,51 @@ class ProposedPaths:
     displacement_margins_m: Array
 
 
+@dataclass(frozen=True)
+class Verified:
+    """What the verifier finds of n approaches.
+
+    Attributes:
+        residuals: recomputed errors, each of all approaches.
+        deviations: how far motion leaves the lines, shape (n,) [m].
+        margins: smallest distances of a joint to a limit, shape (n,) [rad].
+    """
+
+    residuals: tuple[Residuals, ...]
+    deviations: Array
+    margins: Array
+
+    @property
+    def accepted(self) -> NDArray[np.bool_]:
+        """Whether every residual of an approach is, shape (n,)."""
+        return np.asarray(np.all([residual.accepted for residual in self.residuals], axis=0))
+
+
+def verify_many(problem: Problem, proposed: ProposedPaths) -> Verified:
+    """Residuals of approaches that claim to be solutions.
+
+    Args:
+        problem: without relaxations, of an arm with a closed form that is not on a rail.
+        proposed: its approaches, at least one.
+    """
+    claimed = _claimed(proposed)
+    standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
+    deviations, margins = _as_executed(problem, proposed.branches, claimed)
+    room, targets = proposed.displacement_margins_m, problem.targets_by_id
+    needed = np.array([needed_margin(targets[target_id]) for target_id in proposed.target_ids])
+    sides = (1, -1) if problem.options.symmetric_tool else (1,)
+    wrong = np.isin(proposed.tool_sides, sides, invert=True).astype(np.float64)
+    residuals = (
+        Residuals("tool_side", wrong, 0.0),
+        *path_residuals(problem, claimed, standby, thinning),
+        *branch_residuals(problem, claimed, proposed.branches),
+        *deviation_residuals(problem, deviations, deviations),
+        *margin_residuals(problem, claimed, margins, margins),
+        *displacement_residuals(problem, claimed, proposed.branches, room, needed),
+    )
+    return Verified(residuals, deviations, margins)
+
+
 def judge_many(
     problem: Problem, proposed: ProposedPaths, reports: Sequence[SolverReport]
 ) -> dict[str, Approach]:
@@ -69,34 +115,21 @@ def judge_many(
     """
     if not proposed.target_ids:
         return {}
-    options = problem.options
-    claimed = _claimed(proposed)
-    standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
-    deviations, margins = _as_executed(problem, proposed.branches, claimed)
-    room, targets = proposed.displacement_margins_m, problem.targets_by_id
-    needed = np.array([needed_margin(targets[target_id]) for target_id in proposed.target_ids])
-    residuals = (
-        *path_residuals(problem, claimed, standby, thinning),
-        *branch_residuals(problem, claimed, proposed.branches),
-        *deviation_residuals(problem, deviations, deviations),
-        *margin_residuals(problem, claimed, margins, margins),
-        *displacement_residuals(problem, claimed, proposed.branches, room, needed),
-    )
-    accepted = np.logical_and.reduce([residual.accepted for residual in residuals])
-    accepted &= np.isin(proposed.tool_sides, (1, -1) if options.symmetric_tool else (1,))
-    efforts = efforts_between(problem, thinning, proposed.references)
+    found, options, targets = verify_many(problem, proposed), problem.options, problem.targets_by_id
+    paths, room = np.ascontiguousarray(proposed.paths), proposed.displacement_margins_m
+    efforts = efforts_between(problem, paths[:, -1], proposed.references)
     columns = zip(
         proposed.target_ids,
         reports,
         proposed.angles_rad.tolist(),
         proposed.tool_sides.tolist(),
         proposed.branches.tolist(),
-        claimed.paths,
-        deviations.tolist(),
+        paths,
+        found.deviations.tolist(),
         efforts.tolist(),
-        margins.tolist(),
+        found.margins.tolist(),
         room.tolist(),
-        accepted.tolist(),
+        found.accepted.tolist(),
         strict=True,
     )
     levels = {

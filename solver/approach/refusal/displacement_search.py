@@ -34,9 +34,10 @@ from solver.approach.refusal.tolerances import (
     SEED_SPREAD,
     SEED_SPREAD_M,
 )
-from solver.approach.task.feasibility import fastest_joint, limit_margin, tool_axes, trace
+from solver.approach.task.feasibility import limit_margin, tool_axes, trace
 from solver.approach.uncertainty.displacement import rows_displacement_margin
 from solver.compiled import NONE_YET, kernel
+from solver.kinematics.straight_rates import between_rate_room, posture_rate_room
 
 
 @kernel
@@ -47,6 +48,24 @@ def broken_row(task, rows):
         inside, _ = limit_margin(task, rows[n])
         if inside < worst:
             worst, where = inside, n
+    return where
+
+
+@kernel
+def fastest_row(task, rows):
+    """The row in which joints are shortest of room below the highest rate, or behind which.
+
+    As `trace` measures it: what is watched has to be what breaks.
+    """
+    least, where = math.inf, 0
+    for n in range(len(rows)):
+        room = posture_rate_room(task.geometry, rows[n])
+        if n + 1 < len(rows):
+            spacing = task.retreats[n] - task.retreats[n + 1]
+            swing = between_rate_room(task.geometry, rows[n], rows[n + 1], spacing)
+            room = min(room, swing)
+        if room < least:
+            least, where = room, n
     return where
 
 
@@ -90,7 +109,7 @@ def nearest_displacement(task, branch, start, spread, inside, known, best, share
                     calm = NEAREST_CALMER * calm_reach(task.geometry)
                     away = Watched(listed, count, jumps, 0, widened, calm, NEAREST_BENT_RAD)
                     minimise(moved, origin, x, turn, branch, away, known, math.inf, share, scratch)
-                _, _, jumps[jumped] = fastest_joint(task.geometry, task.retreats, rows)
+                jumps[jumped] = fastest_row(task, rows)
                 jumped += 1
                 continue
             if where in listed[:count]:
