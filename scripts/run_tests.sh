@@ -44,13 +44,14 @@ if [ $# -gt 0 ]; then
     exec "$pytest" "$@"
 fi
 
-# As $1 says, beside what is more urgent. Where Linux shares processors between sessions, a priority
-# counts within one alone: a session of its own that yields as a whole.
+# With the priority $1 beside what is more urgent. Where Linux shares processors between sessions, a
+# priority counts within one alone: a session of its own, which as a whole yields as $2 says.
 yielding() {
-    priority=$1
-    shift
+    priority=$1 whole=$2
+    shift 2
     [ -w /proc/self/autogroup ] || exec nice -n "$priority" "$@"
-    exec setsid sh -c 'echo "$0" >/proc/self/autogroup; exec nice -n "$0" "$@"' "$priority" "$@"
+    exec setsid sh -c 'echo "$1" >/proc/self/autogroup; priority=$0; shift; exec nice -n "$priority" "$@"' \
+        "$priority" "$whole" "$@"
 }
 
 waiting=$(mktemp)
@@ -58,10 +59,10 @@ computing=$(mktemp)
 trap 'rm -f "$waiting" "$computing"' EXIT
 failed=0
 
-yielding 17 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
+yielding 17 14 "$pytest" -n 3 --dist loadfile --no-loadscope-reorder -m "not alone" \
     tests/app tests/deploy tests/docs >"$waiting" 2>&1 &
 services=$!
-yielding 19 "$pytest" -n 2 --dist loadfile -m "not alone" tests --ignore tests/app --ignore tests/deploy \
+yielding 19 19 "$pytest" -n 2 --dist loadfile -m "not alone" tests --ignore tests/app --ignore tests/deploy \
     --ignore tests/docs --ignore tests/hardware --ignore tests/contracts/test_bus.py \
     >"$computing" 2>&1 &
 solver=$!
