@@ -11,7 +11,7 @@ from solver import Problem
 from solver.problem.solution import SolverReport
 from solver.verification.many import ProposedPaths, judge_many, verify_many
 from tests.solver.verification.spoiling import too_fast, untimed
-from tests.solver.verification.test_residuals import along_branch
+from tests.solver.verification.test_verify_residuals import along_branch
 
 Case = tuple[Problem, ProposedPaths]
 MEASURED = {
@@ -130,7 +130,7 @@ ROWS: dict[str, tuple[Callable[[Case], Case], set[str]]] = {
 # Limits are those of all; no target may move where a joint has no room.
 NO_ROOM = {"limit_excess_rad", "displacement_margin_claim_m"}
 LIMITS = {0.0: NO_ROOM, 1e-6: {"path_limit_excess_rad", *NO_ROOM}}
-# Rows are refined until motion is straight, see test_residuals.
+# Rows are refined until motion is straight, see test_verify_residuals.
 STRAIGHT = "path_deviation_m"
 
 

@@ -82,7 +82,7 @@ SPOILERS: dict[str, Callable[[Approach], Approach]] = {
     "another target": lambda a: replace(a, target_id="5"),
     "unknown target": lambda a: replace(a, target_id="99"),
 }
-"""What breaks several residuals at once; `test_residuals` has one for each."""
+"""What breaks several residuals at once; `test_verify_residuals` has one for each."""
 
 
 @pytest.mark.parametrize("spoil", SPOILERS.values(), ids=SPOILERS.keys())
