@@ -6,7 +6,6 @@ time.
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,7 +170,8 @@ def _exchanged(
         return optima
     angles, sides = optima.angles_rad.copy(), optima.tool_sides.copy()
     branches, paths = optima.branches.copy(), optima.paths.copy()
-    branches[which] = NO_BRANCH
+    efforts, refined = optima.efforts.copy(), optima.refined.copy()
+    branches[which], efforts[which] = NO_BRANCH, np.nan
     for k in which.tolist():
         task = approach_task(problem, targets[k], problem.start)
         angle, side = signed_angle(angles[k]), int(sides[k])
@@ -183,6 +183,7 @@ def _exchanged(
         if isinstance(found, Candidate) and found.branch is not None:
             angles[k], sides[k] = found.approach_angle_rad, found.tool_side
             branches[k], paths[k, -1] = found.branch, found.thinning_joints
+            efforts[k], refined[k] = found.effort, found.iterations
     held = which[branches[which] != NO_BRANCH]
     paths[held] = many_retreat_rows(
         problem.robot,
@@ -191,7 +192,7 @@ def _exchanged(
         branches[held],
         even_retreats(problem.options),
     )
-    return replace(optima, angles_rad=angles, tool_sides=sides, branches=branches, paths=paths)
+    return Optima(angles, sides, branches, efforts, paths, np.zeros_like(leaves), refined)
 
 
 def _vectors(targets: Sequence[Target]) -> tuple[Array, Array]:
