@@ -122,10 +122,11 @@ def _proposed(problem: Problem, targets: Sequence[Target]) -> tuple[ProposedPath
     optima = _exchanged(problem, targets, optima, leaves)
     kept = np.flatnonzero(optima.branches != NO_BRANCH)
     branches, paths = optima.branches[kept], optima.paths[kept]
-    if margins is None or leaves.any():
+    if margins is None:
         margins = _margins(problem, branches, paths)
     else:
-        margins = margins[kept]
+        margins, anew = margins[kept], leaves[kept]
+        margins[anew] = _margins(problem, branches[anew], paths[anew])
     proposed = ProposedPaths(
         target_ids=[targets[k].id for k in kept.tolist()],
         positions=positions[kept],

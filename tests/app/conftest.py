@@ -23,7 +23,7 @@ REPOSITORY = Path(__file__).parents[2]
 EXAMPLE = REPOSITORY / "openapi" / "examples" / "data_set_3.json"
 ANNOUNCEMENT = "Prunus listens on "
 BODY_LIMIT_BYTES = 8_000_000  # of the session's server
-PATIENCE_S = 300  # with what takes seconds, unless other tests have the processors
+START_S = 60
 READY_S = 600  # the first start compiles every kernel
 JOB_S = 600  # jobs take what is left of the processors, which beside other tests is little
 
@@ -80,7 +80,7 @@ def _first_line(process: subprocess.Popen[str]) -> str:
     assert process.stdout is not None
     with selectors.DefaultSelector() as selector:
         selector.register(process.stdout, selectors.EVENT_READ)
-        assert selector.select(PATIENCE_S), "the service said nothing"
+        assert selector.select(START_S), "the service said nothing"
     return process.stdout.readline()
 
 
@@ -108,7 +108,7 @@ def running_server(
         finally:
             process.send_signal(signal.SIGINT)
             try:
-                process.wait(PATIENCE_S)
+                process.wait(20)
             except subprocess.TimeoutExpired:
                 process.kill()
                 raise

@@ -28,7 +28,7 @@ from hardware.link.messages import (
 from hardware.servos.instances import load_instance
 from tests.app.conftest import Server, wait_until
 
-WAIT_S = 300
+WAIT_S = 30
 ALIVE_S = 0.4
 JOINTS = (0.0, 1.5, -1.5, 0.0, 1.5, 0.0)
 AT = "2026-01-01T00:00:00.000Z"

@@ -43,7 +43,7 @@ def test_commands_do_what_the_document_says(tmp_path: Path) -> None:
         }  # fmt: skip
         return subprocess.run(
             ["sh", "-ec", script.replace("http://arm.example:8000", url)],
-            cwd=tmp_path, env=environment, capture_output=True, text=True, check=True, timeout=300,
+            cwd=tmp_path, env=environment, capture_output=True, text=True, check=True, timeout=60,
         ).stdout  # fmt: skip
 
     listed = run(blocks[MAKE])

@@ -46,7 +46,7 @@ def test_commands_answer_what_is_printed(server: Server) -> None:
         assert words[0] == "curl"
         options = ["--silent", "--show-error", "--fail-with-body", "--noproxy", "*"]
         finished = subprocess.run(
-            [*words, *options], capture_output=True, text=True, timeout=300, check=False
+            [*words, *options], capture_output=True, text=True, timeout=60, check=False
         )
         assert finished.returncode == 0, finished.stdout + finished.stderr
         assert_printed(json.loads(finished.stdout), json.loads(printed))

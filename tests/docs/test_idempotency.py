@@ -25,7 +25,7 @@ def test_its_commands_are_good_ones(tmp_path: Path) -> None:
         headers = dict(words[k + 1].split(": ", 1) for k, word in enumerate(words) if word == "-H")
         assert HEADER in headers
         answers = [
-            httpx2.post(words[2], content=words[-1], headers=headers, timeout=300, trust_env=False)
+            httpx2.post(words[2], content=words[-1], headers=headers, timeout=60, trust_env=False)
             for _ in range(2)
         ]
         assert [answer.status_code for answer in answers] == [201, 201]

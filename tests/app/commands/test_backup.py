@@ -12,7 +12,7 @@ from tests.app.conftest import REPOSITORY, running_server
 def backup(output: Path, data_dir: Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "app", "backup", str(output), "--data-dir", str(data_dir)]
     return subprocess.run(
-        command, cwd=REPOSITORY, capture_output=True, text=True, timeout=300, check=False
+        command, cwd=REPOSITORY, capture_output=True, text=True, timeout=60, check=False
     )
 
 

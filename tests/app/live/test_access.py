@@ -33,7 +33,7 @@ from tests.app.fake_worker import FakeWorker, closed, hello, link, link_url, sta
 
 Body = dict[str, Any]
 ORIGIN = "https://orchard.example"
-WAIT_S = 300
+WAIT_S = 30
 
 
 class Tokens:
@@ -74,9 +74,7 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Server, 
 @contextlib.contextmanager
 def client(server: Server, token: str | None) -> Iterator[httpx2.Client]:
     headers = {} if token is None else {"authorization": f"Bearer {token}"}
-    with httpx2.Client(
-        base_url=server.url, headers=headers, timeout=WAIT_S, trust_env=False
-    ) as opened:
+    with httpx2.Client(base_url=server.url, headers=headers, timeout=60, trust_env=False) as opened:
         yield opened
 
 
@@ -87,7 +85,7 @@ def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=60,
         check=False,
     )
 

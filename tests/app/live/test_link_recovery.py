@@ -75,7 +75,7 @@ def test_a_service_that_is_stopped_ends_what_is_executing(
             fake.start()
             execution = executing(first, fake, plan)
             first.process.terminate()
-            first.process.wait(60)
+            first.process.wait(20)
             fake.silence()
     with running_server(tmp_path, PRUNUS_WORKERS="1") as second:
         assert get(second, execution)["error"]["code"] == "service_restarted"

@@ -15,7 +15,6 @@ import httpx2
 import pytest
 
 from tests.app.conftest import (
-    PATIENCE_S,
     REPOSITORY,
     Server,
     assert_problem,
@@ -44,7 +43,7 @@ def asked_of_a_worker_that_stands_still(
     with concurrent.futures.ThreadPoolExecutor(1) as executor:
         solving = executor.submit(server.client.post, "/v1/plans", json=body)
         try:
-            wait_until(lambda: is_solving(server), PATIENCE_S)
+            wait_until(lambda: is_solving(server), 60)
             yield solving
         finally:
             with contextlib.suppress(ProcessLookupError):
@@ -72,22 +71,22 @@ def test_killed_workers_are_replaced(own: Server, request_body: Body) -> None:
     # One that dies idle is replaced before anybody notices.
     (worker,) = own.children()
     os.kill(worker, signal.SIGKILL)
-    wait_until(lambda: not lives(worker), PATIENCE_S)
+    wait_until(lambda: not lives(worker), 10)
     assert own.client.post("/v1/plans", json=request_body).status_code == 201
-    wait_until(lambda: own.client.get("/readyz").status_code == 200, PATIENCE_S)
+    wait_until(lambda: own.client.get("/readyz").status_code == 200, 60)
 
 
 def test_no_process_is_left_behind(tmp_path: Path) -> None:
     with running_server(tmp_path / "interrupted", PRUNUS_WORKERS="2") as server:
         workers = server.children()
         assert len(workers) == 2
-    wait_until(lambda: not any(map(lives, workers)), PATIENCE_S)
+    wait_until(lambda: not any(map(lives, workers)), 10)
 
     with running_server(tmp_path / "killed") as server:
         workers = server.children()
         server.process.kill()
         server.process.wait()
-        wait_until(lambda: not any(map(lives, workers)), PATIENCE_S)
+        wait_until(lambda: not any(map(lives, workers)), 10)
 
 
 def test_taken_port_is_one_line(tmp_path: Path) -> None:
@@ -118,6 +117,6 @@ def _run(*arguments: str) -> subprocess.CompletedProcess[str]:
         cwd=REPOSITORY,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=60,
         check=False,
     )

@@ -17,7 +17,6 @@ import pytest
 from bench.service.postgresql import PostgresqlServer
 from tests.app.conftest import (
     JOB_S,
-    PATIENCE_S,
     REPOSITORY,
     Server,
     assert_problem,
@@ -39,7 +38,7 @@ def serve(data_dir: Path, **environment: str) -> subprocess.CompletedProcess[str
     command = [sys.executable, "-m", "app", "serve", "--port", "0", "--data-dir", str(data_dir)]
     return subprocess.run(
         command, cwd=REPOSITORY, env={**os.environ, **environment}, capture_output=True, text=True,
-        timeout=300, check=False,
+        timeout=60, check=False,
     )  # fmt: skip
 
 
@@ -132,13 +131,13 @@ def test_lost_postgresql(
             assert server.client.get("/healthz").status_code == 200
         finally:
             postgresql.start()
-        wait_until(lambda: server.client.get("/readyz").status_code == 200, PATIENCE_S)
+        wait_until(lambda: server.client.get("/readyz").status_code == 200, 30)
         assert server.client.get(location).content == plan.content
         assert server.client.post("/v1/plans", json=request_body).status_code == 201
         # The lock went with the connection, and is taken again.
         locks = "SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND granted"
         database = postgresql_url.rpartition("/")[2]
-        wait_until(lambda: postgresql.execute(locks, database) == [(1,)], PATIENCE_S)
+        wait_until(lambda: postgresql.execute(locks, database) == [(1,)], 30)
         assert server.client.get("/v1/executions?robot=%00").json() == {"executions": []}
         # PostgreSQL's texts take no NUL, JSON's do.
         request_body["targets"][0]["id"] = "a\0b"

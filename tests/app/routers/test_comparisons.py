@@ -15,13 +15,13 @@ from app.services.comparisons.service import MOST_ACTIVE, ComparisonService
 from app.services.exceptions import Unavailable
 from app.store import ComparisonStore
 from solver.comparison.registry import SCENARIOS
-from tests.app.conftest import PATIENCE_S, Server, assert_problem, running_server, wait_until
+from tests.app.conftest import Server, assert_problem, running_server, wait_until
 
 Body = dict[str, Any]
 QUICK: Body = {"scenario": "strawberry", "methods": ["as", "ncos"], "repeats": 1}
 # A minute and more, if nobody ends it.
 LONG: Body = {"scenario": "strawberry", "methods": ["ncos"], "repeats": 400}
-COMPLETE_S = 600
+COMPLETE_S = 120
 
 
 def post(server: Server, body: Body) -> Body:
@@ -96,7 +96,7 @@ def test_a_running_comparison_tells_how_far_it_is(tmp_path: Path) -> None:
         wait_until(lambda: "progress" in get(server, lost["id"]), COMPLETE_S)
         (worker,) = server.children()
         os.kill(worker, signal.SIGKILL)
-        wait_until(lambda: get(server, lost["id"])["status"] == "failed", PATIENCE_S)
+        wait_until(lambda: get(server, lost["id"])["status"] == "failed", 30)
         assert "lost" in get(server, lost["id"])["detail"]
         wait_until(lambda: get(server, after["id"])["status"] == "completed", COMPLETE_S)
 
