@@ -22,7 +22,7 @@ from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.registry import METHODS
-from solver.problem.options import NORMS, Options
+from solver.problem.options import Options
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
 from solver.robots.files import load_robot, robot_names
@@ -31,6 +31,9 @@ from solver.sequencing.gather import gather
 from solver.sequencing.ordering import coarse_nodes, searched_order
 from solver.sequencing.tolerances import ANNEAL_STEP_RAD
 from solver.solving.solve import solve
+
+ROBOT: Final = "tabletop"
+"""Whose kernels are all robots': what differs between robots is numbers, but for the programmes."""
 
 TELL_S: Final = 10.0
 """How often it is told how far the compilation is [s]: people give up on a minute of silence."""
@@ -43,18 +46,17 @@ def warm_up() -> None:
 
 
 def methods() -> None:
-    """One small problem by every method for each robot."""
+    """One small problem by every method; for the other robots the one whose programme is theirs."""
     for name in robot_names():
         robot = load_robot(name)
-        for method in METHODS:
-            for norm in NORMS:
-                options = Options(method=method, norm=norm)
-                solve(Problem(robot, [home_target(robot)], options=options))
+        for method in METHODS if name == ROBOT else ("ncos",):
+            options = Options(method=method)
+            solve(Problem(robot, [home_target(robot)], options=options))
 
 
 def refusals_and_bounds() -> None:
     """What is refused, certified, uncertain or untimed goes through kernels of its own."""
-    robot = load_robot("tabletop")
+    robot = load_robot(ROBOT)
     several, options = _several(robot), Options(method="ssas", order="independent")
     solve(Problem(robot, several, options=replace(options, certify=True)))
     solve(Problem(robot, several, options=replace(options, include=("path",))))
@@ -62,9 +64,10 @@ def refusals_and_bounds() -> None:
 
 def relaxations() -> None:
     """So does what is relaxed."""
-    robot = load_robot("tabletop")
+    robot = load_robot(ROBOT)
     options = Options(order="independent", strike_zone_m=0.01, tilt_tolerance_rad=0.1)
-    solve(Problem(robot, _several(robot), options=options))
+    planned, refused, _ = _several(robot)
+    solve(Problem(robot, [planned, refused], options=options))
 
 
 def _several(robot: Robot) -> list[Target]:
@@ -78,7 +81,7 @@ def _several(robot: Robot) -> list[Target]:
 
 def orders() -> None:
     """Few targets are ordered by other kernels than many, whose long search is not made here."""
-    robot = load_robot("tabletop")
+    robot = load_robot(ROBOT)
     targets = [replace(home_target(robot), id=str(k)) for k in range(3)]
     problem = Problem(robot, targets, options=Options(method="ssas", order="optimal"))
     solve(problem)
@@ -90,7 +93,7 @@ def orders() -> None:
 
 def other_arms() -> None:
     """No robot that ships needs the numerical inverse; one brought by somebody may."""
-    robot = load_robot("tabletop")
+    robot = load_robot(ROBOT)
     problem = Problem(robot, [home_target(robot)])
     numerical_warm_starts(approach_task(problem, problem.targets[0], problem.start), most=1)
 

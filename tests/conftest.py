@@ -2,12 +2,16 @@
 
 import os
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from bench.service.postgresql import INSTALL, PostgresqlServer, find_programs
 from solver import Robot, load_robot
+
+if TYPE_CHECKING:
+    from tests.app.conftest import Server
 
 # The device of real servos, for tests/contracts/test_bus.py. The service has a setting of that
 # name, its HTTP port, so the services that tests start must not see it.
@@ -27,6 +31,17 @@ settings.load_profile("reproducible")
 @pytest.fixture(scope="session")
 def tabletop() -> Robot:
     return load_robot("tabletop")
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator["Server"]:
+    """A service that tests of routes and of documents share, as each start costs seconds."""
+    from tests.app.conftest import BODY_LIMIT_BYTES, running_server  # other tests do without
+
+    limit = str(BODY_LIMIT_BYTES)
+    folder = tmp_path_factory.mktemp("service")
+    with running_server(folder, PRUNUS_BODY_LIMIT_BYTES=limit) as it:
+        yield it
 
 
 @pytest.fixture(scope="session")

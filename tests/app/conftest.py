@@ -22,7 +22,7 @@ from app.store import open_engine
 REPOSITORY = Path(__file__).parents[2]
 EXAMPLE = REPOSITORY / "openapi" / "examples" / "data_set_3.json"
 ANNOUNCEMENT = "Prunus listens on "
-BODY_LIMIT_BYTES = 8_000_000  # of the session's server
+BODY_LIMIT_BYTES = 8_000_000  # of the session's server, in tests/conftest.py
 START_S = 60
 READY_S = 600  # the first start compiles every kernel
 JOB_S = 600  # jobs take what is left of the processors, which beside other tests is little
@@ -129,14 +129,6 @@ def engine(store_url: URL) -> Iterator[Engine]:
     opened = open_engine(store_url)
     yield opened
     opened.dispose()
-
-
-@pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running_server(
-        tmp_path_factory.mktemp("service"), PRUNUS_BODY_LIMIT_BYTES=str(BODY_LIMIT_BYTES)
-    ) as it:
-        yield it
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@ import json
 import re
 import shlex
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +11,10 @@ import pytest
 
 from app.store.frames import MOST_FRAMES
 from solver.frames import tolerances
-from tests.app.conftest import Server, running_server
+from tests.app.conftest import Server
 from tests.docs.test_documents import ROOT, fences, rows
 
 DOCUMENT = "docs/frames.md"
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    with running_server(tmp_path_factory.mktemp("service"), PRUNUS_WORKERS="1") as it:
-        yield it
 
 
 def assert_printed(found: Any, printed: Any) -> None:

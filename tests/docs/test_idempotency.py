@@ -4,39 +4,38 @@ import re
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import httpx2
 import pytest
 
 from app.routers.idempotency_key import HEADER, LONGEST_KEY, REPLAYED
-from tests.app.conftest import running_server
+from tests.app.conftest import Server
 from tests.docs.test_documents import ROOT, fences
 
 DOCUMENT = "docs/idempotency.md"
 ADDRESS = "http://127.0.0.1:8000"
 
 
-def test_its_commands_are_good_ones(tmp_path: Path) -> None:
+def test_its_commands_are_good_ones(server: Server) -> None:
     (line,) = fences(DOCUMENT, "sh")
     (example,) = fences(DOCUMENT, "python")
-    with running_server(tmp_path, PRUNUS_WORKERS="1") as server:
-        words = shlex.split(line.replace(ADDRESS, server.url))
-        headers = dict(words[k + 1].split(": ", 1) for k, word in enumerate(words) if word == "-H")
-        assert HEADER in headers
-        answers = [
-            httpx2.post(words[2], content=words[-1], headers=headers, timeout=60, trust_env=False)
-            for _ in range(2)
-        ]
-        assert [answer.status_code for answer in answers] == [201, 201]
-        assert [REPLAYED in answer.headers for answer in answers] == [False, True]
-        assert answers[0].content == answers[1].content
-        command = [sys.executable, "-c", example.replace(ADDRESS, server.url)]
-        run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
-        status, location = run.stdout.split()
-        assert status == "201"
-        assert server.client.get(location).json()["summary"]["planned"] == 5
-        assert server.stored_plans() == 2
+    before = server.stored_plans()
+    words = shlex.split(line.replace(ADDRESS, server.url))
+    headers = dict(words[k + 1].split(": ", 1) for k, word in enumerate(words) if word == "-H")
+    assert HEADER in headers
+    answers = [
+        httpx2.post(words[2], content=words[-1], headers=headers, timeout=60, trust_env=False)
+        for _ in range(2)
+    ]
+    assert [answer.status_code for answer in answers] == [201, 201]
+    assert [REPLAYED in answer.headers for answer in answers] == [False, True]
+    assert answers[0].content == answers[1].content
+    command = [sys.executable, "-c", example.replace(ADDRESS, server.url)]
+    run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
+    status, location = run.stdout.split()
+    assert status == "201"
+    assert server.client.get(location).json()["summary"]["planned"] == 5
+    assert server.stored_plans() == before + 2
 
 
 @pytest.mark.parametrize("fact", [f"longer than {LONGEST_KEY} characters", REPLAYED, HEADER])

@@ -3,35 +3,33 @@
 import json
 import re
 import subprocess
-from pathlib import Path
 
 import pytest
 
 from app.services.jobs.work import PART_TARGETS
 from app.settings import Settings
-from tests.app.conftest import JOB_S, running_server, wait_until
+from tests.app.conftest import JOB_S, Server, wait_until
 from tests.docs.test_documents import ROOT, fences
 
 DOCUMENT = "docs/jobs.md"
 ADDRESS = "http://127.0.0.1:8000"
 
 
-def test_its_command_begins_a_job(tmp_path: Path) -> None:
+def test_its_command_begins_a_job(server: Server) -> None:
     (command,) = fences(DOCUMENT, "sh")
-    with running_server(tmp_path, PRUNUS_WORKERS="1") as server:
-        run = subprocess.run(
-            command.replace(ADDRESS, server.url),
-            shell=True, capture_output=True, text=True, check=True, cwd=ROOT,
-        )  # fmt: skip
-        head, _, body = run.stdout.replace("\r", "").partition("\n\n")
-        assert re.match(r"HTTP/1\.1 202 ", head)
-        location = re.search(r"(?mi)^location: (/v1/jobs/\w+)$", head)
-        assert location is not None
-        path = location[1]
-        assert path.endswith(json.loads(body)["id"])
-        wait_until(lambda: server.client.get(path).json()["status"] == "completed", JOB_S)
-        plan = server.client.get(path.replace("jobs", "plans")).json()
-        assert plan["summary"]["planned"] == 5
+    run = subprocess.run(
+        command.replace(ADDRESS, server.url),
+        shell=True, capture_output=True, text=True, check=True, cwd=ROOT,
+    )  # fmt: skip
+    head, _, body = run.stdout.replace("\r", "").partition("\n\n")
+    assert re.match(r"HTTP/1\.1 202 ", head)
+    location = re.search(r"(?mi)^location: (/v1/jobs/\w+)$", head)
+    assert location is not None
+    path = location[1]
+    assert path.endswith(json.loads(body)["id"])
+    wait_until(lambda: server.client.get(path).json()["status"] == "completed", JOB_S)
+    plan = server.client.get(path.replace("jobs", "plans")).json()
+    assert plan["summary"]["planned"] == 5
 
 
 @pytest.mark.parametrize(

@@ -59,6 +59,7 @@ class LineBehind:
         Infinite for an arm without a closed form, whose postures miss the line where they do not
         reach.
         """
+        retreats = np.ascontiguousarray(retreats)
         margins = np.full(len(retreats), np.inf)
         if self.branch is not None:
             geometry = wrist_geometry(self._arm, self.tool)
