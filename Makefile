@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 BENCH_VENV := .venv-bench
 BENCH_BIN := $(BENCH_VENV)/bin
 
-.PHONY: demo test check postgresql serve setup lock docs pictures openapi reports bench bench-quick bench-page bench-service clean
+.PHONY: demo test check postgresql serve setup lock docs pictures openapi reports bench bench-quick bench-page bench-service mutants clean
 
 demo: $(VENV)/run.stamp          ## set up, plan data set 3, execute it on simulated servos
 	@$(BIN)/prunus demo
@@ -60,6 +60,9 @@ bench-quick: $(BENCH_VENV)/bench.stamp ## the same with small sets, into build/b
 bench-service: $(VENV)/dev.stamp ## a live service under load, fuzzed and killed: hours
 	@failed=0; for part in load fuzz kills; do \
 		$(BIN)/python -m bench.service.$$part || failed=1; done; exit $$failed
+
+mutants: $(VENV)/dev.stamp       ## what changes no test notices, a quarter of an hour a room: make mutants ONLY=solver/methods
+	$(BIN)/python -m bench.mutants $(ONLY)
 
 bench-page: $(BENCH_VENV)/bench.stamp ## docs/benchmarks.md and its plots, from bench/results
 	$(BENCH_BIN)/python -m bench.page

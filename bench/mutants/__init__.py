@@ -1,0 +1,1 @@
+"""Mutants of the rooms that decide: what changes there does no test notice? `make mutants`."""
