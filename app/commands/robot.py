@@ -51,8 +51,7 @@ def import_robot(
     ] = 1.0,
 ) -> None:
     """Turn a serial chain of a URDF file into a model file, and say what it can do."""
-    from solver import SolverError, robot_from_urdf, robot_to_toml
-    from solver.kinematics.families import has_closed_form, rail_of
+    from solver import SolverError, family_of, robot_from_urdf, robot_to_toml
 
     try:
         robot = robot_from_urdf(
@@ -68,12 +67,6 @@ def import_robot(
         fail(str(error))
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}")
-    tool = robot.tools[0]
-    if has_closed_form(robot, tool):
-        inverse = "closed form: every method"
-    elif rail_of(robot, tool) is not None:
-        inverse = "closed form on a rail: every method, the rail by a grid"
-    else:
-        inverse = "no closed form: ncos from a numerical start"
+    inverse = family_of(robot, robot.tools[0]).summary
     masses = "masses" if robot.has_masses else "no masses, so no torque weights"
     typer.echo(f"{robot.name}: {len(robot.joints)} joints, {inverse}, {masses}")

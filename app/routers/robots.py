@@ -16,7 +16,7 @@ from app.schemas.robots import (
 )
 from app.services.robots.instances import robot_instance
 from hardware.servos.instances import RobotInstance, instance_names, load_instance
-from solver.robots.model import REVOLUTE, Joint
+from solver import REVOLUTE, Joint, Robot, family_of
 
 router = APIRouter(prefix="/v1/robots", tags=["robots"])
 
@@ -58,6 +58,7 @@ def _summary(instance: RobotInstance) -> RobotSummary:
         simulated=instance.simulated,
         model_version=robot.version,
         description=robot.description,
+        kinematics=_kinematics(robot),
         tools=[tool.name for tool in robot.tools],
     )
 
@@ -71,6 +72,7 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
         model_version=robot.version,
         description=robot.description,
         source=robot.source,
+        kinematics=_kinematics(robot),
         joints=[_joint(joint) for joint in robot.joints],
         mount_position_m=list(robot.mount_position_m),
         mount_rpy_rad=list(robot.mount_rpy_rad),
@@ -89,6 +91,12 @@ def _answer(instance: RobotInstance, calibration_rad: list[float] | MISSING) -> 
         home_joints=list(robot.home_joints),
         calibration_rad=calibration_rad,
     )
+
+
+def _kinematics(robot: Robot) -> str:
+    tool = robot.tool(robot.default_tool)
+    assert tool is not None, "parse_robot checks it"
+    return family_of(robot, tool).name
 
 
 def _joint(joint: Joint) -> JointAnswer:

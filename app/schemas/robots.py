@@ -5,6 +5,11 @@ Clients must expect new fields and new values of every name.
 
 from pydantic import MISSING, BaseModel, Field
 
+KINEMATICS = (
+    "family of the arm with its default tool, by its inverse: `spherical_wrist` (closed form), "
+    "`spherical_wrist_on_rail` (closed form wherever the rail stands), `general` (numerical)"
+)
+
 
 class JointAnswer(BaseModel):
     """A joint: its link's Denavit-Hartenberg row (classic convention) and its limits.
@@ -76,6 +81,7 @@ class RobotSummary(BaseModel):
     simulated: bool = Field(description="whether only simulated servos may stand behind it")
     model_version: str = Field(description="digest of the model file")
     description: str = Field(description="a line for people")
+    kinematics: str = Field(description=KINEMATICS)
     tools: list[str] = Field(description="names of its tools")
 
 
@@ -94,6 +100,7 @@ class RobotAnswer(BaseModel):
     model_version: str = Field(description="digest of the model file")
     description: str = Field(description="a line for people")
     source: str = Field(description="where the model's numbers are from")
+    kinematics: str = Field(description=KINEMATICS)
     joints: list[JointAnswer] = Field(
         description="from the base on; every joint vector is in this order"
     )

@@ -6,7 +6,8 @@ from typing import Final
 
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
-from solver.kinematics.families import Rail, has_closed_form, rail_of
+from solver.kinematics.families.family import Rail
+from solver.kinematics.families.registry import family_of
 from solver.methods.rail import at_rail, rail_effort, rail_positions
 from solver.problem.solution import Reason
 
@@ -20,9 +21,10 @@ def on_any_arm(solve: Solve) -> Solve:
     """The method for every arm, from the one for a spherical wrist without a rail."""
 
     def solve_task(task: ApproachTask) -> Candidate | Reason:
-        if has_closed_form(task.robot, task.tool):
+        family = family_of(task.robot, task.tool)
+        if family.has_closed_form:
             return solve(task)
-        rail = rail_of(task.robot, task.tool)
+        rail = family.rail_of(task.robot)
         return not_applicable(task) if rail is None else over_rail(task, rail, solve)
 
     return solve_task

@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
-from solver.kinematics.families import Rail
+from solver.kinematics.families.family import Rail
 from solver.methods.any_arm import over_rail
 from solver.methods.nlp.backends import solve_instance
 from solver.methods.nlp.formulation import build_programme

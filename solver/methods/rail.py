@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.approach.task.task import ApproachTask
-from solver.kinematics.families import Rail
+from solver.kinematics.families.family import Rail
 from solver.methods.tolerances import RAIL_POSITIONS
 from solver.problem.effort import posture_effort
 from solver.robots.model import Array

@@ -7,7 +7,7 @@ import numpy as np
 
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import ApproachTask
-from solver.kinematics.families import Rail
+from solver.kinematics.families.family import Rail
 from solver.methods.rail import at_rail, rail_effort, rail_positions
 from solver.methods.tolerances import RAIL_BRACKETS, RAIL_COARSE_M, RAIL_FINE_M
 

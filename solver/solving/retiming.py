@@ -14,7 +14,7 @@ from solver.approach.cut_in.cut_in import build_cut_in
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.exceptions import RetimingFailed
-from solver.kinematics.families import has_branches
+from solver.kinematics.families.registry import family_of
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.problem.targets import Target
@@ -64,7 +64,8 @@ def _retimed(
 ) -> Approach:
     # A joint that can turn further than once stays on the turn that was chosen.
     task = approach_task(problem, target, choice.thinning_joints)
-    branches = BRANCHES if has_branches(problem.robot, problem.mounted_tool) else (None,)
+    family = family_of(problem.robot, problem.mounted_tool)
+    branches = BRANCHES if family.has_branches else (None,)
     known = choice.branch in branches and choice.tool_side in task.tool_sides
     if not known or len(choice.thinning_joints) != len(problem.robot.joints):
         raise RetimingFailed(target.id, "is on no branch or side of this arm and tool")

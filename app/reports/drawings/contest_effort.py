@@ -8,13 +8,16 @@ from matplotlib.figure import Figure
 from app.reports.drawings.contest_style import method_style, shown_targets
 from app.reports.drawings.effort import angle_range, draw_curves
 from app.reports.drawings.labels import plain_text
-from solver import Problem, Target
-from solver.approach.arcs.arcs import survey_target
-from solver.approach.task.frame import approach_frame
-from solver.approach.task.relaxation import placement
+from solver import (
+    Problem,
+    Target,
+    approach_frame,
+    family_of,
+    forward_kinematics,
+    placement,
+    survey_target,
+)
 from solver.comparison.result import Comparison, Row
-from solver.kinematics.families import has_closed_form
-from solver.kinematics.forward import forward_kinematics
 
 MOST_PANELS: Final = 6
 
@@ -22,7 +25,7 @@ MOST_PANELS: Final = 6
 def can_draw_effort(problem: Problem) -> bool:
     """Whether there are arcs to draw: efforts count from the start, and the arm has branches."""
     independent = problem.options.order == "independent" or len(problem.targets) == 1
-    return independent and has_closed_form(problem.robot, problem.mounted_tool)
+    return independent and family_of(problem.robot, problem.mounted_tool).has_closed_form
 
 
 def draw_contest_effort(comparison: Comparison, problem: Problem) -> Figure:

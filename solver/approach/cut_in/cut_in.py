@@ -14,7 +14,7 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.feasibility import retreat_from_many
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.chain_rates import rates_behind
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import forward_kinematics, many_poses, tool_centres
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.kinematics.straight_rates import rows_rate_room
@@ -201,8 +201,9 @@ def rate_room(robot: Robot, tool: Tool, branch: int | None, rows: Array) -> Arra
     if branch is None:
         fastest = np.max(rates_behind(robot, tool, rows) * robot.turning, axis=1)
         return np.asarray(1.0 - fastest / JOINT_RATE_RAD_M)
-    if (rail := rail_of(robot, tool)) is not None:
-        robot, rows = rail.arm, np.ascontiguousarray(rows[:, 1:])
+    standing = family_of(robot, tool).standing(robot, rows[-1])
+    assert standing is not None, "it has branches"
     room = np.empty(len(rows))
-    rows_rate_room(wrist_geometry(robot, tool), rows, room)
+    joints = np.ascontiguousarray(rows[:, standing.first :])
+    rows_rate_room(wrist_geometry(standing.arm, tool), joints, room)
     return room

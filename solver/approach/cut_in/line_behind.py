@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from solver.approach.task.feasibility import retreat_from, retreat_reach
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.numerical import postures_behind
 from solver.kinematics.spherical_wrist import wrist_geometry
@@ -68,8 +68,10 @@ class LineBehind:
 
     @cached_property
     def _arm(self) -> Robot:
-        rail = rail_of(self.robot, self.tool)
-        return self.robot if rail is None else rail.arm_at(float(self.thinning[0]))
+        family = family_of(self.robot, self.tool)
+        standing = family.standing(self.robot, np.asarray(self.thinning))
+        assert standing is not None, "it has branches"
+        return standing.arm
 
     @cached_property
     def _pose(self) -> Array:

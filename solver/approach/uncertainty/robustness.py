@@ -18,7 +18,7 @@ from solver.approach.task.task import ApproachTask
 from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import rows_displacement_margins
 from solver.approach.uncertainty.robust_parts import margin_of_approach, parts_of_arcs
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import wrist_geometry
 from solver.problem.options import Options
@@ -83,8 +83,9 @@ def path_displacement_margin(
         thinning: the posture at the target, shape (joints,) [rad or m].
     """
     posture = np.asarray(thinning, dtype=np.float64)
-    if (rail := rail_of(robot, tool)) is not None:
-        robot, posture = rail.arm_at(float(posture[0])), posture[1:]
+    standing = family_of(robot, tool).standing(robot, posture)
+    assert standing is not None, "it has branches"
+    robot, posture = standing.arm, posture[standing.first :]
     return float(displacement_margins(robot, tool, options, np.array([branch]), posture[None])[0])
 
 

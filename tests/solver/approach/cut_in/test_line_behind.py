@@ -3,7 +3,7 @@ import pytest
 
 from solver import Robot, load_robot
 from solver.approach.cut_in.line_behind import LineBehind
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.on_rail import split_rail
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import inverse_kinematics
 from tests.solver.kinematics.arms import ur5
@@ -34,7 +34,7 @@ def test_reach_says_nothing_of_an_arm_without_a_closed_form() -> None:
 
 
 def _branch_of(robot: Robot, q: np.ndarray) -> int:
-    rail = rail_of(robot, robot.tools[0])
+    rail = split_rail(robot)
     arm = robot if rail is None else rail.arm_at(float(q[0]))
     own = q[-6:]
     found = inverse_kinematics(

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from solver import load_robot
-from solver.kinematics.families import rail_of, split_rail
+from solver.kinematics.families.on_rail import split_rail
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import forward_kinematics
 from tests.solver.kinematics.arms import ur5
 
@@ -22,4 +23,4 @@ def test_the_arm_at_a_position_is_the_robot_there() -> None:
             atol=1e-12,
         )
     assert split_rail(load_robot("puma560")) is None
-    assert rail_of(ur5(), ur5().tools[0]) is None
+    assert family_of(ur5(), ur5().tools[0]).rail_of(ur5()) is None
