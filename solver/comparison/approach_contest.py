@@ -12,7 +12,7 @@ from solver.approach.task.task import ApproachTask, approach_task
 from solver.comparison.cold_start import solve_cold
 from solver.comparison.contest import Account, Contest, Entrant, Published
 from solver.exceptions import UnknownEntrant
-from solver.kinematics.families import has_closed_form
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.any_arm import Solve
 from solver.methods.registry import METHODS
@@ -170,8 +170,8 @@ def _entrant(variant: Variant) -> Entrant:
             tasks[k], lambda task: solve_cold(task, COLD_STARTS, problem.options.seed + k)
         )
 
-    programme = variant.solve is METHODS["ncos"].solve
-    starts_cold = programme and has_closed_form(problem.robot, problem.mounted_tool)
+    starts_cold = METHODS[problem.options.method].starts_cold
+    starts_cold &= family_of(problem.robot, problem.mounted_tool).has_closed_form
     return Entrant(variant.name, variant.summary, solve, cold if starts_cold else None)
 
 

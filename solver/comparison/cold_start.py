@@ -17,6 +17,7 @@ from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import Start, make_instance, placed, shape_of
 from solver.methods.nlp.whole_cut_in import pose_of, solve_whole_cut_in
 from solver.problem.effort import posture_effort
+from solver.problem.options import BackendName
 from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason
 from solver.robots.model import Array
@@ -37,7 +38,7 @@ class ColdResult(NamedTuple):
     effort: float
 
 
-def cold_solve(task: ApproachTask, backend: str, starts: int, seed: int) -> ColdResult:
+def cold_solve(task: ApproachTask, backend: BackendName, starts: int, seed: int) -> ColdResult:
     """Solves a task from seeded random starts, all of them, the best answer wins.
 
     Joints are drawn evenly within their limits, standby like thinning, the approach angle from the

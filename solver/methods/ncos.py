@@ -13,7 +13,7 @@ from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
 from solver.approach.uncertainty.levels import first_at_level
-from solver.kinematics.families import has_closed_form, rail_of
+from solver.kinematics.families.registry import family_of
 from solver.methods.candidates import at_angle
 from solver.methods.coupling import Coupling
 from solver.methods.nlp.backends import solve_instance
@@ -21,7 +21,7 @@ from solver.methods.nlp.formulation import build_programme
 from solver.methods.nlp.instance import ProgrammeResult, Start, make_instance, shape_of
 from solver.methods.on_rail import solve_on_rail
 from solver.methods.other_arm import solve_other_arm
-from solver.methods.relaxed.approach import solve_relaxed
+from solver.methods.relaxed.approach import between_neighbours, solve_relaxed
 from solver.problem.retreats import even_retreats
 from solver.problem.solution import Reason
 
@@ -36,14 +36,34 @@ def solve_ncos(task: ApproachTask) -> Candidate | Reason:
     answer is put back on the closed form, which meets them exactly. The answer is therefore never
     dearer than the warm start, and `status` says which of the two it is.
     """
-    if (rail := rail_of(task.robot, task.tool)) is not None:
+    family = family_of(task.robot, task.tool)
+    if (rail := family.rail_of(task.robot)) is not None:
         return solve_on_rail(task, rail)
-    if not has_closed_form(task.robot, task.tool):
+    if not family.has_closed_form:
         return solve_other_arm(task)
     if task.options.relaxed:
         return solve_relaxed(task)
     warm_start = best_on_arcs(task)
     return diagnose(task) if warm_start is None else improved(task, warm_start)
+
+
+def improved_in_chain(
+    task: ApproachTask, start: ArcOptimum, next_thinning: Sequence[float] | None
+) -> Candidate:
+    """The programme's approach between its neighbours, never dearer for the batch than the start.
+
+    It counts the effort of its own thinning posture from the previous standby and that of the next
+    thinning posture from its standby, so what it gains the batch gains.
+
+    Args:
+        task: seen from the previous standby.
+        start: what the ladder graph chose, without relaxations.
+        next_thinning: the next target's thinning posture, shape (joints,); None without one.
+    """
+    if not task.options.relaxed:
+        return improved(task, start, next_thinning)
+    kept = _at_angle(task, start, start.angle_rad)
+    return between_neighbours(task, kept, Coupling(task, next_thinning))
 
 
 def improved(

@@ -25,8 +25,9 @@ from solver.approach.task.packing import packed_targets
 from solver.approach.task.task import approach_task
 from solver.approach.uncertainty.levels import margin_levels
 from solver.approach.uncertainty.robustness import displacement_margins
-from solver.kinematics.families import has_closed_form, rail_of
-from solver.methods.semi_analytic import OPTIMUM, solve_ssas
+from solver.kinematics.families.registry import family_of
+from solver.methods.registry import METHODS
+from solver.methods.semi_analytic import OPTIMUM
 from solver.problem.problem import Problem
 from solver.problem.retreats import even_retreats
 from solver.problem.solution import Approach, SolverReport
@@ -37,19 +38,16 @@ from solver.solving.one_target import solve_between_rows_too
 from solver.tolerances import BATCH_PART
 from solver.verification.many import ProposedPaths, judge_many
 
-METHOD = "ssas"
-
 
 def plans_together(problem: Problem) -> bool:
     """Whether targets of a problem can be planned together."""
     options = problem.options
     return (
-        options.method == METHOD
+        METHODS[options.method].is_arc_optimum
         and not options.timed
         and not options.certify
         and "arcs" not in (options.include or ())
-        and has_closed_form(problem.robot, problem.mounted_tool)
-        and rail_of(problem.robot, problem.mounted_tool) is None
+        and family_of(problem.robot, problem.mounted_tool).has_closed_form
     )
 
 
@@ -83,7 +81,7 @@ def plan_stops(
         displacement_margins_m=_margins(problem, branches, paths),
     )
     reports = [
-        SolverReport(METHOD, 0.0, stop.candidate.iterations, stop.candidate.status)
+        SolverReport(problem.options.method, 0.0, stop.candidate.iterations, stop.candidate.status)
         for stop in stops
     ]
     planned = judge_many(problem, proposed, reports)
@@ -105,7 +103,9 @@ def plan_many(problem: Problem, targets: Sequence[Target]) -> dict[str, Approach
         started = time.perf_counter()
         proposed, refined = _proposed(problem, part)
         elapsed_s = (time.perf_counter() - started) / len(part)
-        reports = [SolverReport(METHOD, elapsed_s, cells, OPTIMUM) for cells in refined]
+        reports = [
+            SolverReport(problem.options.method, elapsed_s, cells, OPTIMUM) for cells in refined
+        ]
         planned |= judge_many(problem, proposed, reports)
     return planned
 
@@ -180,7 +180,7 @@ def _exchanged(
             angle, side, int(optima.branches[k]), tuple(paths[k, -1]), float(optima.efforts[k]),
             int(optima.refined[k]), OPTIMUM,
         )  # fmt: skip
-        found, _ = solve_between_rows_too(task, solve_ssas, known)
+        found, _ = solve_between_rows_too(task, METHODS[problem.options.method].solve, known)
         if isinstance(found, Candidate) and found.branch is not None:
             angles[k], sides[k] = found.approach_angle_rad, found.tool_side
             branches[k], paths[k, -1] = found.branch, found.thinning_joints

@@ -15,7 +15,7 @@ from solver.methods.registry import METHODS
 from solver.problem.problem import Problem
 from solver.problem.solution import INFEASIBLE, PLANNED, Approach, Reason, SolverReport
 from solver.problem.targets import Target
-from solver.sequencing.programmed import programmed
+from solver.sequencing.improving import improved_stop
 from solver.sequencing.sequence import Stop
 from solver.solving.proposal import judged, propose
 from solver.tolerances import EXCHANGE_ROUNDS
@@ -39,22 +39,23 @@ def plan_target(
     """
     started = time.perf_counter()
     task = approach_task(problem, target, reference)
-    method = problem.options.method
+    method = METHODS[problem.options.method]
     outcome: Candidate | Reason
     if stop is None:
-        outcome, task = solve_between_rows_too(task, METHODS[method].solve)
+        outcome, task = solve_between_rows_too(task, method.solve)
     else:
         # A batch is planned as seen from the start; its efforts and their bounds count from here.
-        task = replace(stop.task, reference=task.reference)
-        outcome = programmed(task, stop, following) if method == "ncos" else stop.candidate
+        task, outcome = replace(stop.task, reference=task.reference), stop.candidate
+        if method.improve is not None:
+            outcome = improved_stop(task, stop, following, method.improve)
     elapsed = time.perf_counter() - started
     arcs = task_arcs(task) if "arcs" in (problem.options.include or ()) else None
     if isinstance(outcome, Reason):
         if problem.options.certify:
             outcome = replace(outcome, proven=is_infeasible(task))
-        report = SolverReport(method, elapsed, 0, outcome.code)
+        report = SolverReport(method.name, elapsed, 0, outcome.code)
         return Approach(target.id, INFEASIBLE, report, reason=outcome, arcs=arcs)
-    report = SolverReport(method, elapsed, outcome.iterations, outcome.status)
+    report = SolverReport(method.name, elapsed, outcome.iterations, outcome.status)
     offers = (
         _planned(problem, task, candidate, reference, report)
         for candidate in (outcome, *outcome.others)

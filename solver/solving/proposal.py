@@ -7,8 +7,11 @@ import numpy as np
 
 from solver.approach.cut_in.cut_in import CutIn
 from solver.approach.task.candidate import Candidate
+from solver.approach.task.frame import approach_frame
+from solver.approach.task.relaxation import Placement, placement
 from solver.approach.uncertainty.levels import told_level
 from solver.approach.uncertainty.robustness import path_displacement_margin
+from solver.kinematics.forward import forward_kinematics
 from solver.motion.timing import TimedRows, time_joint_line
 from solver.motion.transfers.joint_line import joint_line
 from solver.problem.effort import posture_effort
@@ -18,8 +21,7 @@ from solver.problem.targets import Target
 from solver.robots.model import Array
 from solver.solving.tolerances import CLAIM_HALVINGS
 from solver.tolerances import TRAJECTORY_STEP_S
-from solver.verification.motion_residuals import cut_in_margin
-from solver.verification.verify import judge, thinning_placement, verify
+from solver.verification.verify import judge, verify
 
 PROPOSED = "proposed"
 
@@ -39,7 +41,7 @@ def propose(
     if cut_in.motion is not None:
         transfer = joint_line(problem.robot, start, standby)
         trajectory = _trajectory(problem, start, cut_in.motion)
-    used = thinning_placement(problem, target, candidate.tool_side, thinning)
+    used = _placement(problem, target, candidate.tool_side, thinning)
     options, room = problem.options, _displacement_margin(problem, candidate, cut_in)
     level, short = told_level(options, target, room)
     return Approach(
@@ -56,7 +58,7 @@ def propose(
         path_joints=cut_in.path_joints,
         path_deviation_m=cut_in.deviation_m,
         effort=posture_effort(thinning, start, problem.joint_weights, options.norm),
-        margin_rad=cut_in_margin(problem, cut_in.path_joints, cut_in.rows),
+        margin_rad=_limit_margin(problem, cut_in),
         displacement_margin_m=room,
         position_margin_m=level,
         margin_short=short,
@@ -86,6 +88,18 @@ def judged(problem: Problem, approach: Approach, reference: Sequence[float]) -> 
         )
         verdict = judge(problem, approach, reference)
     return verdict
+
+
+def _placement(problem: Problem, target: Target, tool_side: int, thinning: Array) -> Placement:
+    pose = forward_kinematics(problem.robot, problem.mounted_tool, np.asarray(thinning))
+    frame = approach_frame(target.position_m, target.branch_direction)
+    return placement(frame, np.asarray(target.position_m), tool_side, pose)
+
+
+def _limit_margin(problem: Problem, cut_in: CutIn) -> float:
+    """Smallest distance to a limit of the rows that are sent and of those that are executed."""
+    rows = np.concatenate((cut_in.path_joints, cut_in.rows))
+    return float(problem.robot.limit_margin(rows).min())
 
 
 def _displacement_margin(problem: Problem, candidate: Candidate, cut_in: CutIn) -> float | None:

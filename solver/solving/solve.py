@@ -2,8 +2,8 @@
 
 import time
 
+from solver.problem.plan import Plan
 from solver.problem.problem import Problem
-from solver.problem.solution import Plan
 from solver.solving.staged import choose, in_answer_order, plan_part
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
-from solver.kinematics.families import has_closed_form
+from solver.kinematics.families.registry import family_of
 from solver.methods.registry import METHODS
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, Arc
@@ -154,7 +154,7 @@ def _as_one(problem: Problem) -> bool:
     return (
         options.order != "independent"
         and METHODS[options.method].chooses_among_arcs
-        and has_closed_form(problem.robot, problem.mounted_tool)
+        and family_of(problem.robot, problem.mounted_tool).has_closed_form
     )
 
 

@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 
-from app.services.jobs.work import PART_TARGETS
 from app.settings import Settings
+from solver.methods.registry import METHODS
 from tests.app.conftest import JOB_S, Server, wait_until
 from tests.docs.test_documents import ROOT, fences
 
@@ -35,7 +35,9 @@ def test_its_command_begins_a_job(server: Server) -> None:
 @pytest.mark.parametrize(
     "fact",
     [
-        f"{PART_TARGETS['ncos']} targets with `ncos`, {PART_TARGETS['ssas']} with `ssas`",
+        "{ncos} targets with `ncos`, {ssas} with `ssas`".format(
+            **{name: row.targets_in_a_part for name, row in METHODS.items()}
+        ),
         f"targets ({Settings().sync_targets_limit:,})",
     ],
 )

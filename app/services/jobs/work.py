@@ -8,22 +8,21 @@ from app.observation.measures import PlanFigures
 from app.services.plans import parts
 from app.services.plans.wire import parse_stored_request, problem_from_wire
 from app.store.jobs import NewPart
-from solver import Problem
-from solver.kinematics.families import has_closed_form
-from solver.solving.staged import (
+from solver import (
+    METHODS,
     Choice,
+    Problem,
     choice_from_json,
     choice_to_json,
     choose,
+    family_of,
     next_reference,
 )
 
 logger = logging.getLogger(__name__)
 
-# A part takes well below a second: that long a job may go on after a stop of the service, and so
-# much is lost when its process is killed.
-PART_TARGETS = {"ssas": 250, "as": 100, "fixed_z": 100, "floating_z": 100, "ncos": 50}
 PART_TARGETS_SLOW = 10
+"""In a part without a closed form, or with certificates."""
 
 
 @dataclass
@@ -80,8 +79,9 @@ def solve_part(
 
 def part_targets(problem: Problem) -> int:
     """How many targets a part has."""
-    quick = has_closed_form(problem.robot, problem.mounted_tool) and not problem.options.certify
-    return PART_TARGETS[problem.options.method] if quick else PART_TARGETS_SLOW
+    family = family_of(problem.robot, problem.mounted_tool)
+    quick = family.has_closed_form and not problem.options.certify
+    return METHODS[problem.options.method].targets_in_a_part if quick else PART_TARGETS_SLOW
 
 
 def plan_head(job_id: str, totals: parts.Totals) -> str:

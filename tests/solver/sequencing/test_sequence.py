@@ -7,6 +7,10 @@ import pytest
 
 from bench.order_references import even_ladder_effort, greedy_effort
 from solver import Options, Problem, Robot, Target
+from solver.approach.cut_in.broken_between_rows import broken_between
+from solver.approach.task.task import ApproachTask
+from solver.problem.options import Norm
+from solver.sequencing import sequence as module
 from solver.sequencing.sequence import least_chain, least_order, sequence
 from tests.solver.problems import DATA_SET_3, random_targets
 from tests.solver.sequencing.batches import batch_of, plain_ladder
@@ -15,7 +19,7 @@ from tests.solver.sequencing.batches import batch_of, plain_ladder
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 @pytest.mark.parametrize("symmetric_tool", [False, True])
 def test_no_dearer_than_a_ladder_of_1440_angles(
-    tabletop: Robot, norm: str, symmetric_tool: bool
+    tabletop: Robot, norm: Norm, symmetric_tool: bool
 ) -> None:
     for seed in (62, 63, 64):
         batch, targets = batch_of(
@@ -28,7 +32,7 @@ def test_no_dearer_than_a_ladder_of_1440_angles(
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_given_is_never_dearer_than_greedy(tabletop: Robot, norm: str) -> None:
+def test_given_is_never_dearer_than_greedy(tabletop: Robot, norm: Norm) -> None:
     gains = []
     for seed in (66, 67, 68):
         batch, targets = batch_of(tabletop, random_targets(seed, 40), norm=norm)
@@ -40,7 +44,7 @@ def test_given_is_never_dearer_than_greedy(tabletop: Robot, norm: str) -> None:
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_few_targets_are_ordered_as_by_exhaustive_search(tabletop: Robot, norm: str) -> None:
+def test_few_targets_are_ordered_as_by_exhaustive_search(tabletop: Robot, norm: Norm) -> None:
     for seed in (69, 70):
         _, reachable = batch_of(tabletop, random_targets(seed, 40), norm=norm)
         batch, targets = batch_of(tabletop, reachable[:5], norm=norm)
@@ -83,3 +87,41 @@ def test_even_ladder_of_data_set_3_is_dearer_than_given(tabletop: Robot) -> None
     ladders, counts = zip(*(even_ladder_effort(problem, n) for n in (36, 72, 144)), strict=True)
     assert counts == (5, 5, 5)
     assert given < ladders[2] <= ladders[1] <= ladders[0] < 1.1 * given
+
+
+def test_the_given_order_is_a_candidate_of_the_optimal(
+    tabletop: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However bad the orders are that the search finds."""
+    batch, targets = batch_of(tabletop, random_targets(seed=71, count=30))
+    given = np.arange(len(targets))
+    rng = np.random.default_rng(1)
+    orders = [rng.permutation(given) for _ in range(6)]
+    best, *_, worst = sorted(orders, key=lambda order: least_chain(batch, order).effort)
+    assert least_chain(batch, best).effort < 0.99 * least_chain(batch, worst).effort
+    monkeypatch.setattr(module, "orders_worth_refining", lambda batch, seed: [worst])
+    assert least_order(batch, best, seed=0).effort == least_chain(batch, best).effort
+    monkeypatch.setattr(module, "orders_worth_refining", lambda batch, seed: [best])
+    assert least_order(batch, worst, seed=0).effort == least_chain(batch, best).effort
+
+
+def test_rows_that_lie_unevenly_are_always_looked_at(
+    tabletop: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The quick look between rows cannot judge those that were added to the even ones."""
+    looked_at = []
+
+    def look(task: ApproachTask, candidate: object) -> float | None:
+        looked_at.append((task.target.id, len(task.retreats_m)))
+        return broken_between(task, candidate)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(module, "broken_between", look)
+    problem = Problem(tabletop, random_targets(66, 300), Options(position_margin_m=0.0))
+    stops = sequence(problem)
+    regular = min(len(stop.task.retreats_m) for stop in stops)
+    uneven = [stop for stop in stops if len(stop.task.retreats_m) > regular]
+    assert uneven
+    for stop in uneven:
+        assert (stop.task.target.id, len(stop.task.retreats_m)) in looked_at
+    assert len({target_id for target_id, _ in looked_at}) < len(stops) / 2
+    assert all(broken_between(stop.task, stop.candidate) is None for stop in stops)
