@@ -7,18 +7,15 @@ of the nearest limits, in the direction in which that is nearest there, and arou
 nearly straight.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.kinematics.families import rail_of
-from solver.kinematics.forward import many_poses
-from solver.kinematics.spherical_wrist import WristGeometry, wrist_geometry
+from solver.kinematics.families.registry import family_of
 from solver.problem.problem import Problem
 from solver.robots.model import Array, Robot
-from solver.robots.rigid import inverse
+from solver.verification.postures import LEAN, REACH, Arms, arms_of
 from solver.verification.tolerances import (
     DISPLACED_LIMITS,
     DISPLACED_ROUNDS,
@@ -34,11 +31,7 @@ _CORNERS: Final = (
 )
 """Directions to all sides, shape (3, 8)."""
 
-_REACH: Final = 6
-_LEAN: Final = slice(7, 9)
-"""Places of the reach and of the forearm's lean across the tool among what is looked at."""
-
-_OF_LIMIT: Final = np.array([*range(6), *range(6), _REACH])
+_OF_LIMIT: Final = np.array([*range(6), *range(6), REACH])
 _SIGNS: Final = np.array([*(1.0,) * 6, *(-1.0,) * 6, 1.0])
 """Of each limit, lower ones first, then upper ones, then the reach: what it limits, and the sign
 with which its distance grows."""
@@ -59,123 +52,51 @@ def displacement_overshoots(
         claims: how far each target may move, shape (n,) [m].
     """
     robot, claims = problem.robot, (1.0 - DISPLACED_SHARE) * claims
-    rail = rail_of(robot, problem.mounted_tool)
-    if rail is None:
+    family = family_of(robot, problem.mounted_tool)
+    if family.has_closed_form:
         return _overshoots(problem, robot, branches, paths, claims)
     found = np.empty(len(paths))
     for k, path in enumerate(paths):
-        arm, own = rail.arm_at(float(path[-1, 0])), slice(k, k + 1)
-        found[own] = _overshoots(problem, arm, branches[own], paths[own, :, 1:], claims[own])
+        standing, own = family.standing(robot, path[-1]), slice(k, k + 1)
+        assert standing is not None, "it has branches"
+        arm, joints = standing.arm, paths[own, :, standing.first :]
+        found[own] = _overshoots(problem, arm, branches[own], joints, claims[own])
     return found
 
 
-@dataclass(frozen=True)
-class _Arms:
-    """n arms, each with its tool's orientation; an axis of one is left for the points of each.
-
-    Attributes:
-        x: the tool's axis in the mount's frame, shape (3, n, 1); so `y` and `z`.
-        signs: which side of the waist's axis, of the elbow and of the wrist, shape (3, n, 1).
-        lower: limits less the margin asked for, shape (6, 1, 1) [rad]; so `upper`.
-    """
-
-    geometry: WristGeometry
-    x: Array
-    y: Array
-    z: Array
-    signs: Array
-    lower: Array
-    upper: Array
-
-    def postures(self, centres: Array, near: Array) -> Array:
-        """What wrist centres, shape (3, n, m), ask of the arm, shape (9, n, m).
-
-        Joints on the turns nearest to those of `near`, shape (6, n, m) [rad]; how far the centre is
-        inside the reach [m]; and the forearm's direction along the tool's x and y.
-        """
-        g, (waist, elbow, wrist) = self.geometry, self.signs
-        cx, cy, cz = centres
-        across = np.hypot(cx, cy)
-        ahead = waist * np.sqrt(np.maximum(across**2 - g.shoulder**2, 0.0))
-        r, s = ahead - g.a1, g.sign1 * (cz - g.d1)
-        distance = np.hypot(r, s)
-        # The triangle of upper arm and forearm.
-        cosine = (distance**2 - g.a2**2 - g.l3**2) / (2 * g.a2 * g.l3)
-        bend = elbow * np.arccos(np.clip(cosine, -1.0, 1.0))
-        turn1 = np.arctan2(cy, cx) - np.arctan2(-g.sign1 * g.shoulder, ahead)
-        turn2 = np.arctan2(s, r) - np.arctan2(g.l3 * np.sin(bend), g.a2 + g.l3 * np.cos(bend))
-        forearm = turn2 + bend - g.beta
-        cos1, sin1, cos, sin = np.cos(turn1), np.sin(turn1), np.cos(forearm), np.sin(forearm)
-        # Its frame: along the forearm, and the two directions across.
-        along = (g.sign3 * sin * cos1, g.sign3 * sin * sin1, -g.sign3 * g.sign1 * cos)
-        first = (cos1 * cos, sin1 * cos, g.sign1 * sin)
-        other = (g.sign3 * g.sign1 * sin1, -g.sign3 * g.sign1 * cos1)
-        ahead_x, ahead_y, ahead_z = self.z
-        by_first = first[0] * ahead_x + first[1] * ahead_y + first[2] * ahead_z
-        by_other = other[0] * ahead_x + other[1] * ahead_y
-        by_along = along[0] * ahead_x + along[1] * ahead_y + along[2] * ahead_z
-        lean_x, lean_y = (
-            along[0] * axis[0] + along[1] * axis[1] + along[2] * axis[2]
-            for axis in (self.x, self.y)
-        )
-        turns = (
-            turn1,
-            turn2,
-            bend - g.beta,
-            np.arctan2(wrist * g.sign5 * by_other, wrist * g.sign5 * by_first),
-            np.arctan2(wrist * np.hypot(by_first, by_other), -g.sign4 * g.sign5 * by_along),
-            np.arctan2(-wrist * g.sign4 * lean_y, wrist * g.sign4 * lean_x),
-        )
-        found = np.empty((9, *centres.shape[1:]))
-        for i, (turn, offset) in enumerate(zip(turns, g.offsets, strict=True)):
-            apart = turn - offset - near[i]
-            found[i] = near[i] + apart - 2 * np.pi * np.round(apart / (2 * np.pi))
-        inner = distance - abs(g.a2 - g.l3)
-        reach = np.minimum(np.minimum(g.a2 + g.l3 - distance, inner), across - abs(g.shoulder))
-        found[_REACH] = reach
-        found[7], found[8] = lean_x, lean_y
-        return found
-
-    def slopes(self, centres: Array, near: Array) -> tuple[Array, Array]:
-        """`postures`, and their slopes by forward differences, shape (9, 3, n, m) [1/m]."""
-        n, m = centres.shape[1:]
-        steps = np.zeros((3, 1, 4, 1))
-        steps[:, 0, 1:, 0] = DISPLACED_STEP_M * np.eye(3)
-        every = (centres[:, :, None] + steps).reshape(3, n, 4 * m)
-        same = np.broadcast_to(near[:, :, None], (6, n, 4, m)).reshape(6, n, 4 * m)
-        found = self.postures(every, same).reshape(9, n, 4, m)
-        here = found[:, :, 0]
-        change = (found[:, :, 1:] - found[:, :, :1]) / DISPLACED_STEP_M
-        return here, np.swapaxes(change, 1, 2)
-
-    def room(self, found: Array) -> Array:
-        """Distances to the limits [rad, or m for the reach], shape (13, n, m), of `postures`."""
-        joints = found[:6]
-        parts = (joints - self.lower, self.upper - joints, found[_REACH : _REACH + 1])
-        return np.concatenate(parts)
+def _slopes(arms: Arms, centres: Array, near: Array) -> tuple[Array, Array]:
+    """`Arms.postures`, and their slopes by forward differences, shape (9, 3, n, m) [1/m]."""
+    n, m = centres.shape[1:]
+    steps = np.zeros((3, 1, 4, 1))
+    steps[:, 0, 1:, 0] = DISPLACED_STEP_M * np.eye(3)
+    every = (centres[:, :, None] + steps).reshape(3, n, 4 * m)
+    same = np.broadcast_to(near[:, :, None], (6, n, 4, m)).reshape(6, n, 4 * m)
+    found = arms.postures(every, same).reshape(9, n, 4, m)
+    here = found[:, :, 0]
+    change = (found[:, :, 1:] - found[:, :, :1]) / DISPLACED_STEP_M
+    return here, np.swapaxes(change, 1, 2)
 
 
 def _overshoots(
     problem: Problem, robot: Robot, branches: NDArray[np.int64], paths: Array, claims: Array
 ) -> Array:
-    tool, options = problem.mounted_tool, problem.options
-    geometry = wrist_geometry(robot, tool)
-    poses = inverse(robot.mount) @ many_poses(robot, tool, paths[:, -1])
-    x, y, z = np.moveaxis(poses[:, :3, :3, None], (2, 1), (0, 1))
-    places = np.stack((branches // 4, branches // 2, branches)) % 2
-    signs = np.where(places[..., None] == 0, 1.0, -1.0)
+    options = problem.options
+    arms = arms_of(robot, problem.mounted_tool, branches, paths[:, -1])
     lower, upper = (one[:, None, None] for one in robot.limits_within(options.limit_margin_rad))
-    arms = _Arms(geometry, x, y, z, signs, lower, upper)
+
+    def room(found: Array) -> Array:
+        """Distances to the limits [rad, or m for the reach], shape (13, n, m), of postures."""
+        joints = found[:6]
+        return np.concatenate((joints - lower, upper - joints, found[REACH : REACH + 1]))
 
     rows = max(2, round(options.standoff_m / DISPLACED_SPACING_M)) + 1
-    behind = geometry.tool_length + np.linspace(options.standoff_m, 0.0, rows)
-    centres = poses[:, :3, 3].T[..., None] - behind * z
+    centres = arms.centres_behind(np.linspace(options.standoff_m, 0.0, rows))
     sent = np.round(np.linspace(0, paths.shape[1] - 1, rows)).astype(np.int64)
     near = np.moveaxis(paths[:, sent], 2, 0)
-    here, slopes = arms.slopes(centres, near)
+    here, slopes = _slopes(arms, centres, near)
     near = here[:6]
-    steep = _length(slopes[: _REACH + 1], 1)
-    distances = arms.room(here) / steep[_OF_LIMIT]
+    steep = _length(slopes[: REACH + 1], 1)
+    distances = room(here) / steep[_OF_LIMIT]
 
     nearest_row = distances.argmin(axis=2)
     nearest = np.take_along_axis(distances, nearest_row[..., None], axis=2)[..., 0]
@@ -186,30 +107,30 @@ def _overshoots(
     start, near_start = centres[:, own, row], near[:, own, row]
     worst, least_steep = -nearest.min(axis=0), steep[:, own, row]
     for _ in range(DISPLACED_ROUNDS):
-        found, slopes_there = arms.slopes(start + claims[:, None] * against, near_start)
+        found, slopes_there = _slopes(arms, start + claims[:, None] * against, near_start)
         # At the edge of reach differences step out of it, where joints stand still.
-        steep_there = np.maximum(_length(slopes_there[: _REACH + 1], 1), least_steep)[_OF_LIMIT]
-        worst = np.maximum(worst, _deepest(arms.room(found), steep_there))
+        steep_there = np.maximum(_length(slopes_there[: REACH + 1], 1), least_steep)[_OF_LIMIT]
+        worst = np.maximum(worst, _deepest(room(found), steep_there))
         places = np.arange(limits.shape[1])
         against = _against(slopes_there[_OF_LIMIT[limits], :, own, places], limits)
     found = arms.postures(start + claims[:, None] * against, near_start)
-    worst = np.maximum(worst, _deepest(arms.room(found), steep_there))
+    worst = np.maximum(worst, _deepest(room(found), steep_there))
 
-    way = _way_to_straight(here[_LEAN], slopes[_LEAN], 0.0)
+    way = _way_to_straight(here[LEAN], slopes[LEAN], 0.0)
     row = _length(way, 0).argmin(axis=1)[:, None]
     start, near_start, way = centres[:, own, row], near[:, own, row], way[:, own, row]
     for _ in range(DISPLACED_ROUNDS):
-        found, slopes_there = arms.slopes(start + way, near_start)
-        way = _way_to_straight(found[_LEAN], slopes_there[_LEAN], way)
+        found, slopes_there = _slopes(arms, start + way, near_start)
+        way = _way_to_straight(found[LEAN], slopes_there[LEAN], way)
     found = arms.postures(start + way, near_start)
-    is_straight = np.hypot(*found[_LEAN])[:, 0] <= STRAIGHT_LEAN
+    is_straight = np.hypot(*found[LEAN])[:, 0] <= STRAIGHT_LEAN
     beyond = (claims[:, None] - _length(way, 0))[:, 0]
-    worst = np.where(is_straight & (found[_REACH, :, 0] >= 0), np.maximum(worst, beyond), worst)
+    worst = np.where(is_straight & (found[REACH, :, 0] >= 0), np.maximum(worst, beyond), worst)
     found = arms.postures(
         start + claims[:, None] * _CORNERS[:, None],
         np.broadcast_to(near_start, (6, len(paths), _CORNERS.shape[1])),
     )
-    return np.asarray(np.maximum(worst, _deepest(arms.room(found), steep[_OF_LIMIT][:, own, row])))
+    return np.asarray(np.maximum(worst, _deepest(room(found), steep[_OF_LIMIT][:, own, row])))
 
 
 def _against(slopes: Array, limits: NDArray[np.int64]) -> Array:

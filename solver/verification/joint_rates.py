@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from solver.kinematics.chain_rates import fastest_on_paths
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.numerical import chain_of
 from solver.problem.problem import Problem
 from solver.robots.model import Array
@@ -28,9 +28,10 @@ def fastest_rates(problem: Problem, paths: Array) -> Array:
         paths: evenly spaced rows, standby first, shape (n, path_points, joints) [rad or m].
     """
     robot, standoff_m = problem.robot, problem.options.standoff_m
-    if (rail := rail_of(robot, problem.mounted_tool)) is not None:
-        # It stands still, and how fast joints turn does not depend on where.
-        robot, paths = rail.arm, paths[..., 1:]
+    family = family_of(robot, problem.mounted_tool)
+    if (standing := family.standing(robot, paths[0, -1])) is not None:
+        # What the arm stands on stands still, and how fast joints turn does not depend on where.
+        robot, paths = standing.arm, paths[..., standing.first :]
     return np.asarray(
         fastest_on_paths(
             chain_of(robot, problem.mounted_tool),

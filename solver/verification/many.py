@@ -10,14 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.approach.cut_in.cut_in import line_deviations, many_retreat_rows
 from solver.approach.task.frame import approach_frames
 from solver.approach.uncertainty.levels import told_level
 from solver.approach.uncertainty.robustness import needed_margin
 from solver.problem.problem import Problem
 from solver.problem.solution import PLANNED, Approach, SolverReport
 from solver.robots.model import Array
-from solver.tolerances import LEAST_REFINED_ROWS, TRAJECTORY_HALVINGS
 from solver.verification.path_residuals import (
     ClaimedPaths,
     Residuals,
@@ -27,8 +25,8 @@ from solver.verification.path_residuals import (
     efforts_between,
     margin_residuals,
     path_residuals,
-    retreats_of,
 )
+from solver.verification.straightness import as_executed
 
 
 @dataclass(frozen=True)
@@ -87,7 +85,7 @@ def verify_many(problem: Problem, proposed: ProposedPaths) -> Verified:
     """
     claimed = _claimed(proposed)
     standby, thinning = claimed.paths[:, 0], claimed.paths[:, -1]
-    deviations, margins = _as_executed(problem, proposed.branches, claimed)
+    deviations, margins = as_executed(problem, claimed, proposed.branches)
     room, targets = proposed.displacement_margins_m, problem.targets_by_id
     needed = np.array([needed_margin(targets[target_id]) for target_id in proposed.target_ids])
     sides = (1, -1) if problem.options.symmetric_tool else (1,)
@@ -160,32 +158,6 @@ def judge_many(
         ) in columns
         if holds
     }  # fmt: skip
-
-
-def _as_executed(
-    problem: Problem, branches: NDArray[np.int64], claimed: ClaimedPaths
-) -> tuple[Array, Array]:
-    """How far motion leaves the lines [m], and its distance to a limit [rad], shape (n,) each.
-
-    Motion goes through the rows, or where those are not straight enough through finer ones.
-    """
-    robot, tool, options = problem.robot, problem.mounted_tool, problem.options
-    lines = claimed.places, claimed.axes[..., 2]
-    deviations = np.full(len(claimed.paths), np.inf)
-    margins = robot.limit_margin(claimed.paths).min(axis=1)
-    count = max(options.path_points, LEAST_REFINED_ROWS)
-    for _ in range(TRAJECTORY_HALVINGS + 1):
-        bent = np.flatnonzero(deviations > options.straightness_m)
-        if not len(bent):
-            break
-        rows = claimed.paths
-        if count > options.path_points:
-            retreats = retreats_of(options, count)
-            rows = many_retreat_rows(robot, tool, rows[bent, -1], branches[bent], retreats)
-        deviations[bent] = line_deviations(robot, tool, rows, *(part[bent] for part in lines))
-        margins[bent] = np.minimum(margins[bent], robot.limit_margin(rows).min(axis=1))
-        count = 2 * count - 1
-    return deviations, margins
 
 
 def _claimed(proposed: ProposedPaths) -> ClaimedPaths:

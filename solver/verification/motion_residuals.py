@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.approach.cut_in.cut_in import line_deviation
 from solver.motion.rates import rate_ratios
 from solver.problem.problem import Problem
 from solver.problem.solution import Trajectory, Transfer
 from solver.robots.model import Array
 from solver.tolerances import LIMIT_EXCESS_RAD, POSITION_ERROR_M, SAME_POSTURE_RAD
+from solver.verification.straightness import line_distances
 from solver.verification.tolerances import RATE_EXCESS_RELATIVE, SAME_TIME_S
 from solver.verification.verdict import Residual
 
@@ -92,18 +92,11 @@ def motion_residuals(
     yield Residual("dwell_moves_rad", still, SAME_POSTURE_RAD)
     for name in ("cut_in", "retreat"):
         _, rows = segment_rows(trajectory, name)
-        deviation = line_deviation(robot, problem.mounted_tool, rows, *line)
+        place, direction = line
+        (deviation,) = line_distances(problem, rows[None], place[None], direction[None]).tolist()
         yield Residual(f"{name}_deviation_m", deviation, problem.options.straightness_m)
         claimed = deviation - claimed_m
         yield Residual(f"{name}_deviation_claim_m", claimed, POSITION_ERROR_M)
-
-
-def cut_in_margin(problem: Problem, path_joints: Array, rows: Array) -> float:
-    """Smallest distance of a revolute joint to its limit, in the path and in finer rows [rad].
-
-    Prismatic joints have no margin in an angle; `path_limit_excess_rad` covers them.
-    """
-    return float(problem.robot.limit_margin(np.concatenate((path_joints, rows))).min())
 
 
 def segment_rows(trajectory: Trajectory, first: str, *others: str) -> tuple[Array, Array]:

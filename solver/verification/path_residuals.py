@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import many_poses
 from solver.kinematics.spherical_wrist import inverse_kinematics
 from solver.problem.options import Options
@@ -105,10 +105,12 @@ def branch_residuals(
 ) -> Iterator[Residuals]:
     """Both ends are on the branch claimed, shape (n,), of an arm with a closed form."""
     tool = problem.mounted_tool
-    rail = rail_of(problem.robot, tool)
-    for name, rows in claimed.ends.items():
-        arm = problem.robot if rail is None else rail.arm_at(float(rows[0, 0]))
-        rows = rows if rail is None else rows[:, 1:]
+    family = family_of(problem.robot, tool)
+    for name, postures in claimed.ends.items():
+        # Many at once are of an arm that stands where it always does.
+        standing = family.standing(problem.robot, postures[0])
+        assert standing is not None, "it has branches"
+        arm, rows = standing.arm, postures[:, standing.first :]
         found = inverse_kinematics(arm, tool, many_poses(arm, tool, rows)).joints
         apart = found[np.arange(len(rows)), branches] - rows
         turned = np.abs(np.remainder(apart + np.pi, 2 * np.pi) - np.pi).max(axis=1)

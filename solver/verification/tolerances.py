@@ -17,6 +17,20 @@ RATE_SCREENED: Final = 0.25
 """Share of JOINT_RATE_RAD_M, from row to row, below which no joint is faster than that between two:
 where it is at one point it turns by 0.4 rad or more within 3 mm."""
 
+STRAIGHTNESS_SHARES: Final = (0.0, 0.25, 0.5, 0.75)
+"""Shares of the way from a row to the next at which the distance from the line is measured. It is
+nearly a parabola there, so its middle is among them and its quarter points tell if it is not."""
+
+ROW_ERROR: Final = 1e-12
+"""Error of a finer row above which it is improved [m and rad]: four digits above rounding, and the
+next step squares it."""
+
+ROW_ROUNDS: Final = 30
+"""Steps of Newton's method that a finer row may take; from between rows that are sent four do."""
+
+ROW_LARGEST_STEP: Final = 0.3
+"""Longest step of a joint towards a finer row [rad or m]: further the arm is no longer linear."""
+
 DISPLACED_SPACING_M: Final = 0.01
 """About how far apart rows are at which it is tried how far a target may move [m]: all rows have
 one orientation, so what stops one stops those beside it no more than their distance later."""

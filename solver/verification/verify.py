@@ -10,21 +10,19 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from solver.approach.cut_in.cut_in import refined_rows
 from solver.approach.numerical.warm_start import same_side
 from solver.approach.task.frame import approach_frame
-from solver.approach.task.relaxation import Placement, placement, rotation, shortened
 from solver.approach.uncertainty.levels import margin_levels
 from solver.approach.uncertainty.robustness import needed_margin
-from solver.kinematics.families import has_branches
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.spherical_wrist import BRANCHES
+from solver.problem.plan import Plan
 from solver.problem.problem import Problem
 from solver.problem.solution import (
     INFEASIBLE,
     PLANNED,
     Approach,
-    Plan,
     Reason,
     Trajectory,
     Transfer,
@@ -38,7 +36,6 @@ from solver.tolerances import (
 )
 from solver.verification.motion_residuals import (
     Motion,
-    cut_in_margin,
     motion_residuals,
     segment_rows,
     shape_residuals,
@@ -54,6 +51,8 @@ from solver.verification.path_residuals import (
     margin_residuals,
     path_residuals,
 )
+from solver.verification.placement import Seen, seen_from
+from solver.verification.straightness import as_executed, limit_margins
 from solver.verification.verdict import Residual, Verification
 
 MAY_BE_ABSENT = (
@@ -154,26 +153,22 @@ def _claim(problem: Problem, approach: Approach) -> _Claim | None:
     return None if missing else _Claim(**values)
 
 
-def thinning_placement(
-    problem: Problem, target: Target, tool_side: int, thinning: Array
-) -> Placement:
-    """How a thinning posture stands to its target, recomputed from the posture, shape (joints,)."""
-    pose = forward_kinematics(problem.robot, problem.mounted_tool, np.asarray(thinning))
-    frame = approach_frame(target.position_m, target.branch_direction)
-    return placement(frame, np.asarray(target.position_m), tool_side, pose)
+def _seen(problem: Problem, target: Target, claim: _Claim, posture: Array) -> Seen:
+    pose = forward_kinematics(problem.robot, problem.mounted_tool, np.asarray(posture))
+    branch = approach_frame(target.position_m, target.branch_direction).branch
+    return seen_from(np.asarray(target.position_m), branch, claim.tool_side, pose)
 
 
 def _wanted_pose(problem: Problem, target: Target, claim: _Claim) -> tuple[Array, Array]:
     """Where the tool has to be at thinning, shape (3,), and its axes, shape (3, 3).
 
-    At the claimed approach angle; strike and swing are those of the thinning posture, cut to what
+    At the claimed approach angle; strike and lean are those of the thinning posture, cut to what
     is allowed. Without relaxations that leaves the target itself and the unrelaxed axes.
     """
-    options = problem.options
-    seen = thinning_placement(problem, target, claim.tool_side, claim.path_joints[-1])
+    options, seen = problem.options, _seen(problem, target, claim, claim.path_joints[-1])
     frame = approach_frame(target.position_m, target.branch_direction)
-    swing = rotation(shortened(seen.swing_rad, options.tilt_tolerance_rad))
-    axes = swing @ frame.axes(claim.approach_angle_rad, claim.tool_side)
+    upright = frame.axes(claim.approach_angle_rad, claim.tool_side)
+    axes = seen.leaning(upright, options.tilt_tolerance_rad)
     strike = min(max(seen.strike_m, 0.0), options.strike_zone_m)
     return np.asarray(target.position_m) + strike * axes[:, 2], axes
 
@@ -185,8 +180,7 @@ def _relaxation_residuals(
 
     That no more is used than allowed is in the residuals of the path.
     """
-    used = thinning_placement(problem, target, claim.tool_side, claim.thinning_joints)
-    options = problem.options
+    used, options = _seen(problem, target, claim, claim.thinning_joints), problem.options
     for name, claimed, truth, on, allowed in (
         ("strike_claim_m", approach.strike_m, used.strike_m, options.strike_zone_m > 0,
          POSITION_ERROR_M),
@@ -236,7 +230,7 @@ def _branch_residuals(problem: Problem, claim: _Claim, claimed: ClaimedPaths) ->
     """The branch claimed, at both ends; of an arm without branches, that its rows hang together."""
     robot, tool, rows = problem.robot, problem.mounted_tool, np.asarray(claim.path_joints)
     known = claim.branch is not None and 0 <= claim.branch < BRANCHES
-    if known != has_branches(robot, tool) or (claim.branch is not None and not known):
+    if known != family_of(robot, tool).has_branches or (claim.branch is not None and not known):
         yield Residual("branch_exists", 1.0, 0.0)
         return
     if claim.branch is None:
@@ -257,12 +251,14 @@ def _number_residuals(
         yield Residual("lower_bound_above_effort", above, EFFORT_ERROR_RELATIVE)
     claimed = _claimed_path(problem, target, claim)
     if claim.trajectory is None:
-        finer, deviation = _refined(problem, claimed, claim.branch)
+        branches = None if claim.branch is None else np.array([claim.branch])
+        deviations, margins = as_executed(problem, claimed, branches)
         claims = np.array([claim.path_deviation_m])
-        yield from _single(deviation_residuals(problem, np.array([deviation]), claims))
+        yield from _single(deviation_residuals(problem, deviations, claims))
     else:
-        finer = segment_rows(claim.trajectory, "cut_in", "dwell", "retreat")[1]
-    margins = np.array([cut_in_margin(problem, claim.path_joints, finer)])
+        executed = segment_rows(claim.trajectory, "cut_in", "dwell", "retreat")[1]
+        rows = np.concatenate((claimed.paths[0], executed))
+        margins = limit_margins(problem.robot, rows[None])
     yield from _single(margin_residuals(problem, claimed, margins, np.array([claim.margin_rad])))
 
 
@@ -290,17 +286,6 @@ def _level_residuals(
         levels = (*margin_levels(problem.options, target), 0.0)
         yield Residual("position_margin_is_level", float(level not in levels), 0.0)
         yield Residual("position_margin_excess_m", level - margin, POSITION_ERROR_M)
-
-
-def _refined(problem: Problem, claimed: ClaimedPaths, branch: int | None) -> tuple[Array, float]:
-    return refined_rows(
-        problem.robot,
-        problem.mounted_tool,
-        problem.options,
-        claimed.paths[0],
-        branch,
-        (claimed.places[0], claimed.axes[0, :, 2]),
-    )
 
 
 def _timing_residuals(
