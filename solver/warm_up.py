@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor, wait
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +22,7 @@ from solver.approach.task.packing import packed_problem
 from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.registry import METHODS
-from solver.problem.options import Options
+from solver.problem.options import MethodName, Options
 from solver.problem.problem import Problem
 from solver.problem.targets import Target
 from solver.robots.files import load_robot, robot_names
@@ -49,9 +49,9 @@ def methods() -> None:
     """One small problem by every method; for the other robots the one whose programme is theirs."""
     for name in robot_names():
         robot = load_robot(name)
-        for method in METHODS if name == ROBOT else ("ncos",):
-            options = Options(method=method)
-            solve(Problem(robot, [home_target(robot)], options=options))
+        wanted: Iterable[MethodName] = METHODS if name == ROBOT else ("ncos",)
+        for method in wanted:
+            solve(Problem(robot, [home_target(robot)], Options(method=method)))
 
 
 def refusals_and_bounds() -> None:

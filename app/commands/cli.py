@@ -188,7 +188,7 @@ def worker(
     from hardware.exceptions import HardwareError
     from hardware.options import read_token
     from hardware.worker.program import WorkerOptions, run_worker
-    from solver.exceptions import SolverError
+    from solver import SolverError
 
     try:
         options = WorkerOptions(
@@ -230,7 +230,7 @@ def calibrate(
 
     from hardware.arm.calibrating import calibrate_arm
     from hardware.exceptions import HardwareError
-    from solver.exceptions import SolverError
+    from solver import SolverError
 
     try:
         offsets = calibrate_arm(robot, port, baud_rate, joints_deg, output)
@@ -271,7 +271,7 @@ def servo_bus(
     from hardware.exceptions import HardwareError
     from hardware.simulator.faults import FaultRefused
     from hardware.simulator.program import run_servo_bus
-    from solver.exceptions import SolverError
+    from solver import SolverError
 
     try:
         run_servo_bus(

@@ -84,7 +84,7 @@ def _prepared(scenario: str, methods: str | None) -> "Contest":
 
     from app.schemas.faults import structural_faults
     from app.services.comparisons.running import prepare
-    from solver.exceptions import InvalidProblem, SolverError
+    from solver import InvalidProblem, SolverError
 
     names = None if methods is None else [name.strip() for name in methods.split(",")]
     try:

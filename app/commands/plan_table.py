@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hardware.servos.instances import load_instance
-from solver.robots.model import PRISMATIC
+from solver import PRISMATIC
 
 HEADINGS: Final = (
     "target",

@@ -7,6 +7,7 @@ from typing import Any, Final
 import orjson
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
+from fastapi.sse import EventSourceResponse
 from starlette.concurrency import iterate_in_threadpool
 from starlette.types import Send
 
@@ -84,7 +85,7 @@ async def follow_job(job_id: str, jobs: TheJobs) -> Response:
     changes = jobs.changes(job_id, HEARTBEAT_S)
     first = await anext(changes)
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_events(first, changes), media_type=EVENTS, headers=headers)
+    return EventSourceResponse(_events(first, changes), headers=headers)
 
 
 async def _events(
@@ -98,6 +99,7 @@ async def _events(
 
 def _event(job: JobRow) -> bytes:
     name = "progress" if job.active else "ended"
+    # With the fields in the order that they always had.
     return f"event: {name}\nid: {job.done}\ndata: {job_json(job)}\n\n".encode()
 
 

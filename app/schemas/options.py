@@ -62,7 +62,7 @@ def _late(
 
 
 def _asked(name: str) -> dict[str, Any]:
-    from solver.problem.options import (
+    from solver import (
         DEFAULT_POSITION_MARGIN_M,
         FULL_ANSWER,
         FULL_ANSWER_TARGETS,
@@ -105,7 +105,7 @@ def _answered(name: str) -> dict[str, Any]:
 
 def known_values() -> Mapping[str, Sequence[str]]:
     """What the solver knows today, by the options that take names."""
-    from solver.problem.options import (
+    from solver import (
         BACKEND_NAMES,
         INCLUDES,
         METHOD_NAMES,

@@ -15,7 +15,7 @@ from hardware.options import joints_from_degrees
 from hardware.servos.instances import load_instance
 from hardware.servos.joints import ArmMap, load_arm
 from hardware.tolerances import LARGEST_CALIBRATION_RAD, MEASURED_READS
-from solver.robots.model import Array
+from solver import Array
 
 
 def calibrate_arm(

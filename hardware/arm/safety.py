@@ -7,7 +7,7 @@ from hardware.exceptions import OutsideLimits, UnsafeGoal
 from hardware.servos.joints import ArmMap, JointDrive
 from hardware.servos.units import ticks_per_radian
 from hardware.tolerances import LIMIT_TICKS, SPEED_EXCESS
-from solver.robots.model import Array, Robot
+from solver import Array, Robot
 
 
 def slack_rad(arm: ArmMap, ticks: int = LIMIT_TICKS) -> Array:

@@ -26,7 +26,7 @@ from hardware.tolerances import (
     STILL_TICKS,
     TORQUE_JUMP_TICKS,
 )
-from solver.robots.model import Array, Robot
+from solver import Array, Robot
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from hardware.exceptions import BusLost, CorruptPackets, ServoAlarm, ServoMissin
 from hardware.link.messages import ServoHealth
 from hardware.servos.joints import ArmMap, JointDrive, Motor
 from hardware.servos.units import load_share, voltage_v
-from solver.robots.model import Array
+from solver import Array
 
 
 class ServoChain:

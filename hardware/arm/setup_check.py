@@ -6,7 +6,7 @@ from hardware.servos.control_tables import SIMULATED_FIRMWARE
 from hardware.servos.joints import SYNC_CABLE, JointDrive, Motor
 from hardware.servos.units import ticks_per_radian
 from hardware.tolerances import PAIR_RAD
-from solver.robots.model import Joint, Robot
+from solver import Joint, Robot
 
 ALL_ANSWERS = 2
 SLAVE = 2

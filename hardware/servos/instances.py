@@ -9,9 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from hardware.servos.joints import arm_names
-from solver.exceptions import InvalidRobot, UnknownRobot
-from solver.robots.files import load_robot, robot_names
-from solver.robots.model import Robot
+from solver import InvalidRobot, Robot, UnknownRobot, load_robot, robot_names
 
 SIMULATED_SUFFIX: Final = "-sim"
 

@@ -14,7 +14,7 @@ from hardware.exceptions import InvalidArm
 from hardware.servos.control_tables import ServoModel, servo_models
 from hardware.servos.units import motor_angle, position_ticks
 from hardware.tolerances import LARGEST_CALIBRATION_RAD
-from solver.robots.model import Array, Robot
+from solver import Array, Robot
 
 SINGLE: Final = "single"
 MIRRORED: Final = "mirrored"

@@ -37,9 +37,7 @@ from hardware.tolerances import (
     TICK_S,
 )
 from hardware.worker.order import Order, Segment, TargetOrder
-from solver.kinematics.forward import forward_kinematics
-from solver.motion.timing import time_joint_line
-from solver.robots.model import Array, Robot, Tool
+from solver import Array, Robot, Tool, forward_kinematics, time_joint_line
 
 
 class Execution:

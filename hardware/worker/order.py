@@ -10,7 +10,7 @@ from hardware.exceptions import OrderRefused
 from hardware.link.messages import Execute, TargetMotion
 from hardware.servos.joints import ArmMap
 from hardware.tolerances import JOINED_RAD
-from solver.robots.model import Array, Robot, Tool
+from solver import Array, Robot, Tool
 
 SEGMENTS = ("transfer", "cut_in", "dwell", "retreat")
 

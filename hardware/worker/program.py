@@ -21,7 +21,7 @@ from hardware.servos.instances import RobotInstance, load_instance
 from hardware.servos.joints import load_arm
 from hardware.worker.journal import Journal
 from hardware.worker.worker import Worker
-from solver.robots.model import Tool
+from solver import Tool
 
 
 class NotSimulated(HardwareError):

@@ -54,7 +54,7 @@ from hardware.worker.journal import Journal
 from hardware.worker.order import build_order
 from hardware.worker.safe_state import make_safe, stop_report
 from hardware.worker.telemetry import telemetry
-from solver.robots.model import Tool
+from solver import Tool
 
 logger = logging.getLogger(__name__)
 

@@ -69,7 +69,7 @@ class Agreement:
         return float(self.residuals_m.max())
 
 
-def register(pairs: Sequence[PointPair], *, reach_m: float | None = None) -> Agreement:
+def register_frame(pairs: Sequence[PointPair], *, reach_m: float | None = None) -> Agreement:
     """The pose that least squares finds for pairs of points; the scale stays one.
 
     Args:
@@ -104,7 +104,7 @@ def register(pairs: Sequence[PointPair], *, reach_m: float | None = None) -> Agr
     )
 
 
-def check(base_from_frame: RigidTransform, pairs: Sequence[PointPair]) -> Agreement:
+def check_frame(base_from_frame: RigidTransform, pairs: Sequence[PointPair]) -> Agreement:
     """What pairs of points say about a pose that is given; one pair says something already.
 
     Raises:

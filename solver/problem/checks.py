@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from solver.exceptions import Fault, UnsupportedKinematics
+from solver.exceptions import Fault
 from solver.frames.checks import direction_fault, vector_fault
-from solver.kinematics.spherical_wrist import wrist_geometry
+from solver.kinematics.families.registry import why_no_closed_form
 from solver.problem.options import (
     BACKEND_NAMES,
     INCLUDES,
@@ -116,11 +116,9 @@ def _closed_form_faults(
     asked += [("options", "include", i) for i, part in include if part == "arcs"]
     if not asked and not uncertain:
         return
-    try:
-        wrist_geometry(robot, tool)
-    except UnsupportedKinematics as error:
+    if (why_not := why_no_closed_form(robot, tool)) is not None:
         for path in (*asked, *uncertain):
-            yield Fault(path, f"this needs the closed form: {error}")
+            yield Fault(path, f"this needs the closed form: {why_not}")
 
 
 def _weight_faults(options: Options, robot: Robot) -> Iterable[Fault]:

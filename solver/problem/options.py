@@ -2,18 +2,24 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal, get_args
 
 from solver.problem.tolerances import LEAST_DWELL_S, LEAST_STRIKE_ZONE_M, LEAST_TILT_RAD
 
-METHOD_NAMES: Final = ("fixed_z", "floating_z", "as", "ssas", "ncos")
-BACKEND_NAMES: Final = ("sqp", "ipopt")
-QP_SOLVER_NAMES: Final = ("daqp", "osqp", "piqp")
+MethodName = Literal["fixed_z", "floating_z", "as", "ssas", "ncos"]
+BackendName = Literal["sqp", "ipopt"]
+QpSolverName = Literal["daqp", "osqp", "piqp"]
 """The rows of the registries in `solver.methods`, which stand above; a contract test compares."""
 
-ORDERS: Final = ("independent", "given", "optimal")
-NORMS: Final = ("l1", "l2")
-WEIGHTS: Final = ("uniform", "torque")
+Order = Literal["independent", "given", "optimal"]
+Norm = Literal["l1", "l2"]
+Weights = Literal["uniform", "torque"]
+METHOD_NAMES: Final[tuple[MethodName, ...]] = get_args(MethodName)
+BACKEND_NAMES: Final[tuple[BackendName, ...]] = get_args(BackendName)
+QP_SOLVER_NAMES: Final[tuple[QpSolverName, ...]] = get_args(QpSolverName)
+ORDERS: Final[tuple[Order, ...]] = get_args(Order)
+NORMS: Final[tuple[Norm, ...]] = get_args(Norm)
+WEIGHTS: Final[tuple[Weights, ...]] = get_args(Weights)
 FULL_ANSWER: Final = ("path", "transfer", "trajectory")
 INCLUDES: Final = (*FULL_ANSWER, "arcs")
 FULL_ANSWER_TARGETS: Final = 50
@@ -38,12 +44,38 @@ RANGES: Final[dict[str, tuple[float, float]]] = {
 
 @dataclass(frozen=True)
 class Options:
-    """How to solve; see docs/options.md for each field's meaning and range."""
+    """How to solve; docs/options.md has the ranges.
 
-    method: str = "ncos"
-    order: str = "given"
-    norm: str = "l1"
-    weights: str = "uniform"
+    Attributes:
+        method: how a target's approach is found; `ncos` starts from what `ssas` finds.
+        order: whether effort counts for each target from the start posture ("independent") or from
+            the previous standby, in the order given or in one that is chosen.
+        norm: effort is the sum of the weighted joint travel ("l1") or of its squares ("l2").
+        weights: of the joints in the effort: all one, or from the arm's own torques.
+        joint_weights: replace `weights`, one a joint.
+        standoff_m: how far standby is behind the target.
+        path_points: how many rows of the cut-in are answered, both ends included.
+        straightness_m: how far the executed cut-in may leave its line.
+        dwell_s: time at the target.
+        limit_margin_rad: kept from every limit of a joint that turns during the cut-in.
+        symmetric_tool: the tool may be turned half about its axis.
+        strike_zone_m: length of the forks along which the target may lie.
+        tilt_tolerance_rad: how far the tool's y axis may lean off the branch.
+        position_margin_m: how far a target should be free to move, as far as some approach allows;
+            None is DEFAULT_POSITION_MARGIN_M with a closed form and 0 without.
+        samples: approach angles of `floating_z`.
+        seed: of what is drawn.
+        certify: efforts get a proven lower bound.
+        nlp_backend: what solves the programme of `ncos`.
+        qp_solver: what solves the quadratic programmes of "sqp".
+        include: parts of the answer; None is all of FULL_ANSWER for up to FULL_ANSWER_TARGETS
+            targets, else the path.
+    """
+
+    method: MethodName = "ncos"
+    order: Order = "given"
+    norm: Norm = "l1"
+    weights: Weights = "uniform"
     joint_weights: Sequence[float] | None = None
     standoff_m: float = 0.04
     path_points: int = 20
@@ -57,8 +89,8 @@ class Options:
     samples: int = 50
     seed: int = 0
     certify: bool = False
-    nlp_backend: str = "sqp"
-    qp_solver: str = "daqp"
+    nlp_backend: BackendName = "sqp"
+    qp_solver: QpSolverName = "daqp"
     include: Sequence[str] | None = None
 
     @property

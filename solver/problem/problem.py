@@ -4,14 +4,15 @@ Field names are those of the request's JSON, so that a fault points to the same 
 Lengths in metres, angles in radians, everything in the robot's base frame.
 """
 
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, Final, overload
 
 from solver.exceptions import Fault, InvalidProblem
 from solver.frames.transforms import NamedFrame
-from solver.kinematics.families import has_closed_form
+from solver.kinematics.families.registry import family_of
 from solver.kinematics.torque_weights import torque_weights
 from solver.problem.checks import problem_faults
 from solver.problem.options import (
@@ -24,13 +25,19 @@ from solver.problem.targets import Target
 from solver.robots.model import Robot, Tool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Problem:
     """A batch of targets for one robot with one tool, from one start posture.
 
-    `tool` and `start_joints` default to the robot's own. Targets are in the base frame; `frame`
-    only tells in which other one they were sent, if in one (`targets_in_base`).
-    Construction checks everything:
+    Targets are in the base frame. Construction checks everything:
+
+    Attributes:
+        robot: the arm.
+        targets: of which an approach is wanted to each.
+        options: how to solve.
+        tool: one of the robot's by its name, or another; by default the robot's own.
+        start_joints: the start posture, shape (joints,) [rad or m]; by default the robot's home.
+        frame: in which other frame the targets were sent, if in one (`targets_in_base`).
 
     Raises:
         InvalidProblem: with every fault found, each with the path of its field.
@@ -38,22 +45,62 @@ class Problem:
 
     robot: Robot
     targets: Sequence[Target]
-    tool: Tool | str | None = None
-    start_joints: Sequence[float] | None = None
-    options: Options = field(default_factory=Options)
-    frame: NamedFrame | None = None
+    options: Options
+    tool: Tool | str | None
+    start_joints: Sequence[float] | None
+    frame: NamedFrame | None
 
-    def __post_init__(self) -> None:
-        faults: list[Fault] = []
+    @overload
+    def __init__(
+        self,
+        robot: Robot,
+        targets: Sequence[Target],
+        options: Options | None = None,
+        *,
+        tool: Tool | str | None = None,
+        start_joints: Sequence[float] | None = None,
+        frame: NamedFrame | None = None,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self,
+        robot: Robot,
+        targets: Sequence[Target],
+        tool: Tool | str | None,
+        start_joints: Sequence[float] | None = None,
+        options: Options | None = None,
+        frame: NamedFrame | None = None,
+    ) -> None: ...
+
+    def __init__(
+        self, robot: Robot, targets: Sequence[Target], *third: Any, **by_name: Any
+    ) -> None:
+        placed = _by_place(third)
+        if wrong := (placed.keys() & by_name.keys()) | (by_name.keys() - _BY_NAME):
+            raise TypeError(f"unknown to Problem, or given twice: {', '.join(sorted(wrong))}")
+        given = dict.fromkeys(_BY_NAME) | placed | by_name
+        targets = tuple(targets)
+        faults = [
+            Fault(("targets", k), f"a Target is wanted, not a {type(one).__name__}; {_MAKE_ONE}")
+            for k, one in enumerate(targets)
+            if not isinstance(one, Target)
+        ]
+        if faults:
+            raise InvalidProblem(tuple(faults))
+        options = given["options"] or Options()
+        object.__setattr__(self, "robot", robot)
+        object.__setattr__(self, "targets", targets)
+        object.__setattr__(self, "tool", given["tool"])
+        object.__setattr__(self, "frame", given["frame"])
         tool = self._resolve_tool(faults)
-        object.__setattr__(self, "targets", tuple(self.targets))
-        start = self.robot.home_joints if self.start_joints is None else self.start_joints
-        faults += problem_faults(self.robot, tool, self.targets, start, self.options)
+        start = robot.home_joints if given["start_joints"] is None else given["start_joints"]
+        faults += problem_faults(robot, tool, self.targets, start, options)
         if faults:
             raise InvalidProblem(tuple(faults))
         object.__setattr__(self, "tool", tool)
         object.__setattr__(self, "start_joints", tuple(float(value) for value in start))
-        object.__setattr__(self, "options", _resolved(self.options, self))
+        object.__setattr__(self, "options", _resolved(options, self))
 
     def _resolve_tool(self, faults: list[Fault]) -> Tool:
         default = self.robot.tool(self.robot.default_tool)
@@ -95,6 +142,25 @@ class Problem:
         return (1.0,) * len(self.robot.joints)
 
 
+_BY_NAME: Final = frozenset({"options", "tool", "start_joints", "frame"})
+_IN_OLD_ORDER: Final = ("tool", "start_joints", "options", "frame")
+_MAKE_ONE: Final = "Target(**it) makes one of a dict with its fields"
+
+
+def _by_place(third: tuple[Any, ...]) -> dict[str, Any]:
+    """What stands behind robot and targets: the options, or as it was until 0.1 the tool first."""
+    if len(third) == 1 and isinstance(third[0], Options | None):
+        return {"options": third[0]}
+    if third:
+        warnings.warn(
+            "behind robot and targets Problem takes options; give tool, start_joints and frame by "
+            "name",
+            DeprecationWarning,
+            stacklevel=3,
+        )
+    return dict(zip(_IN_OLD_ORDER, third, strict=False))
+
+
 def _resolved(options: Options, problem: Problem) -> Options:
     include = options.include
     if include is None:
@@ -102,7 +168,7 @@ def _resolved(options: Options, problem: Problem) -> Options:
     values: dict[str, Any] = {entry.name: getattr(options, entry.name) for entry in fields(Options)}
     values["include"] = tuple(include)
     if options.position_margin_m is None:
-        closed_form = has_closed_form(problem.robot, problem.mounted_tool)
+        closed_form = family_of(problem.robot, problem.mounted_tool).has_closed_form
         values["position_margin_m"] = DEFAULT_POSITION_MARGIN_M if closed_form else 0.0
     if options.joint_weights is not None:
         values["joint_weights"] = tuple(float(weight) for weight in options.joint_weights)

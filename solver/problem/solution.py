@@ -1,13 +1,11 @@
-"""What is answered: a plan with one approach for each target, planned or infeasible with a reason.
+"""What is answered for a target: an approach, planned or infeasible with a reason.
 
 Rows of joint vectors are arrays of shape (rows, joints) [rad]; times in s, lengths in m.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from solver.problem.problem import Problem
 from solver.robots.model import Array
 
 PLANNED: Final = "planned"
@@ -190,27 +188,3 @@ class Approach:
     transfer: Transfer | None = None
     trajectory: Trajectory | None = None
     arcs: tuple[Arc, ...] | None = None
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Approaches of a batch in execution order, with the problem they answer."""
-
-    problem: Problem
-    approaches: Sequence[Approach]
-    elapsed_s: float
-
-    @property
-    def planned(self) -> int:
-        """How many targets are planned."""
-        return sum(approach.status == PLANNED for approach in self.approaches)
-
-    @property
-    def infeasible(self) -> int:
-        """How many targets are not."""
-        return len(self.approaches) - self.planned
-
-    @property
-    def total_effort(self) -> float:
-        """Sum of the efforts of the planned targets."""
-        return sum(approach.effort or 0.0 for approach in self.approaches)

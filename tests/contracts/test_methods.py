@@ -9,11 +9,12 @@ from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.task import approach_task
 from solver.methods.registry import METHODS
+from solver.problem.options import MethodName
 from solver.problem.solution import REASON_CODES, Reason
 from tests.solver.problems import random_targets
 
 
-def targets_for(method: str, seed: int, count: int) -> list[Target]:
+def targets_for(method: MethodName, seed: int, count: int) -> list[Target]:
     """Random targets; for `fixed_z` with branches normal to the x axis, as it takes no others."""
     targets = random_targets(seed, count)
     if method != "fixed_z":
@@ -24,7 +25,7 @@ def targets_for(method: str, seed: int, count: int) -> list[Target]:
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_answers_are_candidates_or_reasons(tabletop: Robot, name: str) -> None:
+def test_answers_are_candidates_or_reasons(tabletop: Robot, name: MethodName) -> None:
     problem = Problem(tabletop, targets_for(name, seed=51, count=30), options=Options(method=name))
     candidates = reasons = 0
     for target in problem.targets:
@@ -46,7 +47,9 @@ def test_answers_are_candidates_or_reasons(tabletop: Robot, name: str) -> None:
 
 @pytest.mark.parametrize("name", METHODS)
 @pytest.mark.parametrize("tool", ["laser", "scaffold"])
-def test_symmetric_tools_and_both_tools_are_planned(tabletop: Robot, name: str, tool: str) -> None:
+def test_symmetric_tools_and_both_tools_are_planned(
+    tabletop: Robot, name: MethodName, tool: str
+) -> None:
     options = Options(method=name, symmetric_tool=True, norm="l2")
     targets = targets_for(name, seed=52, count=24)
     plan = solve(Problem(tabletop, targets, tool=tool, options=options))

@@ -27,7 +27,7 @@ from dataclasses import replace
 from numba.core.dispatcher import Dispatcher
 
 from solver import Options, Problem, load_robot, robot_names, solve
-from solver.kinematics.families import has_closed_form
+from solver.kinematics.families.registry import family_of
 from solver.methods.registry import METHODS
 from solver.warm_up import home_target, warm_up
 
@@ -50,7 +50,7 @@ for name in robot_names():
     several = [target, refused]
     problems = [([target], {"method": method, "norm": "l2"}) for method in METHODS]
     problems += [(several, {"order": order}) for order in ("given", "independent")]
-    if has_closed_form(robot, robot.tool(robot.default_tool)):
+    if family_of(robot, robot.tool(robot.default_tool)).has_closed_form:
         several.append(replace(target, id="uncertain", position_std_m=1e-5))
         problems += [(several, {"order": "optimal"})]
         problems += [(several, {"method": "ssas", "certify": True, "include": ("path",)})]

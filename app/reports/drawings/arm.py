@@ -10,12 +10,16 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from app.reports.drawings.labels import plain_text
 from app.reports.drawings.references import planned_with_references
-from solver import Problem, Target
-from solver.approach.arcs.arcs import survey_target
-from solver.approach.task.frame import ApproachFrame, approach_frame
-from solver.kinematics.forward import link_transforms
-from solver.problem.solution import Arc
-from solver.robots.model import Array
+from solver import (
+    ApproachFrame,
+    Arc,
+    Array,
+    Problem,
+    Target,
+    approach_frame,
+    link_transforms,
+    survey_target,
+)
 
 BRANCH_COLOUR, BLOSSOM_COLOUR, FREE_COLOUR, BLOCKED_COLOUR = (
     "#6b4a2b",

@@ -12,10 +12,8 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from app.reports.drawings.arm import draw_branch, draw_links, draw_pedestal
 from app.reports.drawings.contest_style import shown_targets
 from app.reports.drawings.labels import plain_text
-from solver import Problem
+from solver import Array, Problem, link_transforms
 from solver.comparison.result import Comparison
-from solver.kinematics.forward import link_transforms
-from solver.robots.model import Array
 
 MOST_POSTURES: Final = 6
 COLUMNS: Final = 3

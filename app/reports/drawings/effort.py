@@ -10,9 +10,7 @@ from matplotlib.figure import Figure
 
 from app.reports.drawings.labels import plain_text
 from app.reports.drawings.references import planned_with_references
-from solver import Arc, Problem
-from solver.approach.arcs.arcs import Survey, survey_target
-from solver.robots.model import Robot
+from solver import Arc, Problem, Robot, Survey, survey_target
 
 CHOSEN_COLOUR = "#e0457b"
 BORDER_DEG = 20.0

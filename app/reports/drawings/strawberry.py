@@ -13,6 +13,7 @@ from matplotlib.ticker import MultipleLocator
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
+from solver import Array, Reason
 from solver.comparison.scenarios.strawberry import METHODS, N_MM_IN_J
 from solver.comparison.strawberry.index import energy_index
 from solver.comparison.strawberry.mechanism import (
@@ -23,8 +24,6 @@ from solver.comparison.strawberry.mechanism import (
     load_mechanism,
 )
 from solver.comparison.strawberry.table_3 import PLANT_CENTRE_M, PLANT_RADIUS_M, table_3
-from solver.problem.solution import Reason
-from solver.robots.model import Array
 
 TABLE_COLOUR, GANTRY_COLOUR, BED_COLOUR = "#b9bcc2", "#5b6472", "#8a6f55"
 CANOPY_COLOUR, TARGET_COLOUR = "#2e9e5b", "#e0457b"

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from solver import Robot, load_robot, robot_names
-from solver.kinematics.torque_weights import torque_parts, torque_weights
+from solver import Robot, load_robot, robot_names, torque_parts, torque_weights
 
 GRAVITY_COLOUR, INERTIA_COLOUR, WEIGHT_COLOUR = "#6b4a2b", "#e0457b", "#2e9e5b"
 

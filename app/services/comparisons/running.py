@@ -10,11 +10,11 @@ import orjson
 from app.reports.html import comparison_to_html
 from app.reports.json_values import comparison_to_wire
 from app.services.plans.wire import parse_request, problem_from_wire
+from solver import UnknownScenario
 from solver.comparison.contest import Contest
 from solver.comparison.registry import SCENARIOS, find_scenario
 from solver.comparison.run import run_contest
 from solver.comparison.scenarios.own_request import request_contest
-from solver.exceptions import UnknownScenario
 
 REQUEST_SUFFIX = ".json"
 

@@ -27,10 +27,9 @@ from app.services.store_calls import store_call
 from app.store import ACCEPTED, ComparisonStore, NewKey, new_entry
 from app.store.failures import cause_of
 from hardware.clock import timestamp
-from solver import Fault
+from solver import Fault, UnknownEntrant
 from solver.comparison.registry import SCENARIOS
 from solver.comparison.run import MAXIMUM_REPEATS
-from solver.exceptions import UnknownEntrant
 
 logger = logging.getLogger(__name__)
 

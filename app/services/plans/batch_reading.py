@@ -9,8 +9,7 @@ import orjson
 from app.services.exceptions import told_as_invalid
 from app.services.plans.sent_frames import stored_request
 from app.services.plans.wire import parse_request, plan_to_wire, problem_from_wire
-from solver import Fault, InvalidProblem, Plan, Problem
-from solver.frames.transforms import RigidTransform
+from solver import Fault, InvalidProblem, Plan, Problem, RigidTransform
 
 LARGE_BODY_BYTES = 256 * 1024
 """Of two thousand targets or so. Parsing holds up all of its process, 1.4 s for 100,000 targets,

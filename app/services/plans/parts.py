@@ -9,8 +9,7 @@ import orjson
 
 from app.observation.measures import PlanFigures
 from app.services.plans.wire import plan_to_wire
-from solver import Plan, Problem
-from solver.solving.staged import Choice, plan_part
+from solver import Choice, Plan, Problem, plan_part
 
 
 @dataclass(frozen=True)

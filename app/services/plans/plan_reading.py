@@ -8,7 +8,7 @@ import orjson
 
 from app.services.plans.parts import joined
 from app.store import PlanStore, StoredPlan
-from solver.problem.solution import PLANNED
+from solver import PLANNED
 
 
 def plan_chunks(store: PlanStore, plan_id: str, plan: StoredPlan) -> Iterator[bytes]:

@@ -16,12 +16,16 @@ from app.services.plans.sent_frames import BASE_FRAME
 from app.store import FramesFull, FrameStore, NewKey, StoredFrame
 from hardware.clock import instant_text
 from hardware.servos.instances import instance_names, load_instance
-from solver import Fault, Robot, UnknownRobot
-from solver.frames.point_pairs import PointPair
-from solver.frames.registration import Agreement, check, register
-from solver.frames.transforms import (
+from solver import (
+    Agreement,
+    Fault,
     FrameWarning,
+    PointPair,
     RigidTransform,
+    Robot,
+    UnknownRobot,
+    check_frame,
+    register_frame,
     transform_from_matrix,
     transform_from_quaternion,
 )
@@ -61,7 +65,7 @@ class FrameService:
         pose, warnings = _pose(request.model_dump())
         agreement = None
         if request.check_pairs is not MISSING:
-            agreement = check(pose, _pairs(request.check_pairs))
+            agreement = check_frame(pose, _pairs(request.check_pairs))
             warnings = (*warnings, *agreement.warnings)
         return self._keep(_Frame(name, GIVEN, pose, warnings, agreement))
 
@@ -77,7 +81,7 @@ class FrameService:
             Conflict: there are too many frames.
         """
         _check_name(name)
-        agreement = register(_pairs(request.pairs), reach_m=_reach_m(request.robot))
+        agreement = register_frame(_pairs(request.pairs), reach_m=_reach_m(request.robot))
         pose = agreement.base_from_frame
         return self._keep(_Frame(name, ESTIMATED, pose, agreement.warnings, agreement), key)
 

@@ -6,8 +6,7 @@ from typing import Any
 import orjson
 
 from app.schemas.requests import PlanRequest
-from solver import Fault, InvalidProblem, Problem
-from solver.frames.transforms import NamedFrame, RigidTransform
+from solver import Fault, InvalidProblem, NamedFrame, Problem, RigidTransform
 
 BASE_FRAME = "base"
 

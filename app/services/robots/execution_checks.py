@@ -15,8 +15,7 @@ from app.services.store_calls import store_call
 from app.store import PlanStore
 from hardware.link.messages import TargetAccount
 from hardware.servos.instances import RobotInstance, load_instance
-from solver import Fault, UnknownRobot
-from solver.problem.solution import PLANNED
+from solver import PLANNED, Fault, UnknownRobot
 
 FAULT: Final = "fault"
 

@@ -10,10 +10,15 @@ from app.services.plans.wire import parse_stored_request, problem_from_wire
 from app.services.robots.execution_record import PLAN_OUTDATED
 from hardware.clock import timestamp
 from hardware.link.messages import Failure, SegmentTimes, TargetMotion, encode
-from solver import Approach, InvalidProblem, Problem
-from solver.exceptions import RetimingFailed
-from solver.problem.solution import PLANNED
-from solver.solving.retiming import ChosenApproach, retime
+from solver import (
+    PLANNED,
+    Approach,
+    ChosenApproach,
+    InvalidProblem,
+    Problem,
+    RetimingFailed,
+    retime,
+)
 
 
 def target_motions(request: str, answer: str, execution_id: str) -> tuple[str, ...] | Failure:

@@ -21,9 +21,7 @@ from app.services.plans.selecting import selection_to_json
 from app.services.solving.pool import SolverPool
 from app.services.solving.process import SolverLost
 from app.services.solving.work import prepare, solve_share, solve_to_json
-from solver import Problem
-from solver.frames.transforms import RigidTransform
-from solver.solving.many_targets import plans_together
+from solver import Problem, RigidTransform, plans_together
 
 Result = TypeVar("Result")
 

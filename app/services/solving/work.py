@@ -7,8 +7,7 @@ from app.observation.measures import PlanFigures
 from app.services.plans.parts import SolvedPart, plan_figures, solve_part
 from app.services.plans.wire import plan_to_wire
 from app.services.solving.long_lived import keep_for_good
-from solver import Problem, solve
-from solver.solving.staged import choose
+from solver import Problem, choose, solve
 
 
 def solve_to_json(problem: Problem, plan_id: str) -> tuple[bytes, PlanFigures]:

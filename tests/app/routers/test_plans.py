@@ -128,7 +128,9 @@ def test_same_plan_over_http_command_line_and_python(server: Server, tmp_path: P
         for target in body["targets"]
     ]
     options = Options(**body["options"])
-    problem = Problem(load_robot("tabletop"), targets, "laser", body["start_joints"], options)
+    problem = Problem(
+        load_robot("tabletop"), targets, options, tool="laser", start_joints=body["start_joints"]
+    )
     in_python = plan_to_wire(solve(problem), "python")
 
     assert by_command["summary"]["planned"] == 5

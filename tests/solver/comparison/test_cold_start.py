@@ -9,12 +9,13 @@ from solver.comparison import cold_start
 from solver.comparison.cold_start import cold_solve
 from solver.methods.nlp import sqp
 from solver.methods.nlp.backends import BACKENDS
+from solver.problem.options import BackendName
 from tests.solver.problems import data_set_3
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_more_starts_solve_more_and_none_is_cheaper_than_the_optimum(
-    tabletop: Robot, backend: str
+    tabletop: Robot, backend: BackendName
 ) -> None:
     problem = data_set_3(tabletop, norm="l2")
     solved = {1: 0, 8: 0}

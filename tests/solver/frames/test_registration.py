@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from solver import InvalidProblem
 from solver.frames.point_pairs import PointPair
-from solver.frames.registration import check, register
+from solver.frames.registration import check_frame, register_frame
 from solver.frames.tolerances import MOST_PAIRS
 from solver.frames.transforms import RigidTransform, transform_from_rotation
 from solver.robots.model import Array
@@ -50,18 +50,18 @@ def scene(seed: int, count: int, noise_m: float = 0.0, scale: float = 1.0) -> Sc
 
 def refusal(given: list[PointPair]) -> dict[str, str]:
     with pytest.raises(InvalidProblem) as raised:
-        register(given)
+        register_frame(given)
     return {fault.pointer: fault.detail for fault in raised.value.faults}
 
 
 def codes(given: list[PointPair], reach_m: float | None = None) -> list[str]:
-    return [row.code for row in register(given, reach_m=reach_m).warnings]
+    return [row.code for row in register_frame(given, reach_m=reach_m).warnings]
 
 
 @given(seeds, st.integers(3, 12))
 def test_exact_points_give_the_pose_exactly(seed: int, count: int) -> None:
     it = scene(seed, count)
-    found = register(it.pairs)
+    found = register_frame(it.pairs)
     assert found.base_from_frame.position_m == pytest.approx(it.truth.position_m, abs=1e-12)
     assert found.base_from_frame.rotation == pytest.approx(it.truth.rotation, abs=1e-12)
     assert found.max_residual_m < 1e-12
@@ -73,7 +73,7 @@ def test_exact_points_give_the_pose_exactly(seed: int, count: int) -> None:
 def test_order_of_pairs_does_not_matter(seed: int, count: int) -> None:
     it = scene(seed, count, NOISE_M)
     order = np.random.default_rng(seed).permutation(count)
-    found, other = register(it.pairs), register([it.pairs[k] for k in order])
+    found, other = register_frame(it.pairs), register_frame([it.pairs[k] for k in order])
     assert other.base_from_frame.rotation == pytest.approx(found.base_from_frame.rotation, abs=1e-9)
     assert other.residuals_m == pytest.approx(found.residuals_m[order], abs=1e-9)
     assert {row.code for row in other.warnings} == {row.code for row in found.warnings}
@@ -83,7 +83,7 @@ def test_order_of_pairs_does_not_matter(seed: int, count: int) -> None:
 def test_exchanged_points_give_the_inverse_with_the_same_residuals(seed: int, count: int) -> None:
     """Why residuals cannot tell that the two were exchanged."""
     it = scene(seed, count, NOISE_M)
-    found, other = register(it.pairs), register(pairs(it.base_m, it.frame_m))
+    found, other = register_frame(it.pairs), register_frame(pairs(it.base_m, it.frame_m))
     back = other.base_from_frame.inverse
     assert back.rotation == pytest.approx(found.base_from_frame.rotation, abs=1e-9)
     assert back.position_m == pytest.approx(found.base_from_frame.position_m, abs=1e-9)
@@ -96,7 +96,7 @@ def test_noise_comes_out_as_theory_says(count: int) -> None:
     squares, turns, told = [], [], []
     for seed in range(400):
         it = scene(seed, count, NOISE_M)
-        found = register(it.pairs)
+        found = register_frame(it.pairs)
         assert found.rotation_std_rad is not None
         squares.append(np.sum(found.residuals_m**2))
         error = found.base_from_frame.rotation @ it.truth.rotation.T
@@ -117,7 +117,7 @@ def test_honest_noise_is_rarely_warned_of(count: int) -> None:
 @given(seeds, counts, st.sampled_from([0.97, 1.03, 0.001, 1000.0, 0.01, 0.0254, 0.3048]))
 def test_scale_is_told(seed: int, count: int, scale: float) -> None:
     it = scene(seed, count, noise_m=0.0)
-    found = register(pairs(it.frame_m / min(scale, 1), it.base_m * max(scale, 1)))
+    found = register_frame(pairs(it.frame_m / min(scale, 1), it.base_m * max(scale, 1)))
     (detail,) = [row.detail for row in found.warnings if row.code == "scaled"]
     assert found.scale == pytest.approx(scale, rel=1e-9)
     named = {0.001: "frame_m seems to be millimetres", 1000.0: "base_m seems to be millimetres",
@@ -149,7 +149,7 @@ def test_flat_points_are_their_own_mirror_images(seed: int, count: int) -> None:
     it = scene(seed, count)
     flat = it.frame_m * [1, 1, 0]
     noise = np.random.default_rng(seed).normal(size=flat.shape) * NOISE_M
-    found = register(pairs(flat, it.truth.points(flat) + noise))
+    found = register_frame(pairs(flat, it.truth.points(flat) + noise))
     assert "mirrored" not in {row.code for row in found.warnings}
     error = found.base_from_frame.rotation @ it.truth.rotation.T
     assert Rotation.from_matrix(error).magnitude() < 0.05
@@ -199,7 +199,7 @@ def test_a_wrong_pair_is_named(seed: int, count: int, off_m: float, which: int) 
     it = scene(seed, count, NOISE_M)
     k = which % count
     it.base_m[k] += off_m * np.array([0.6, 0.0, 0.8])
-    (told,) = [row for row in register(it.pairs).warnings if row.code == "large_residual"]
+    (told,) = [row for row in register_frame(it.pairs).warnings if row.code == "large_residual"]
     assert told.detail.startswith(f"pair {k} ")
 
 
@@ -225,7 +225,7 @@ def test_exchanged_points_show_where_the_arm_does_not_reach(seed: int, count: in
 @given(seeds, st.integers(1, 12))
 def test_a_true_pose_passes_its_check(seed: int, count: int) -> None:
     it = scene(seed, count, NOISE_M)
-    found = check(it.truth, it.pairs)
+    found = check_frame(it.truth, it.pairs)
     assert found.warnings == ()
     assert found.max_residual_m < 10 * NOISE_M
     assert (found.scale is None) == (count < 3)
@@ -236,24 +236,24 @@ def test_an_inverted_pose_is_told(seed: int, count: int) -> None:
     it = scene(seed, count, NOISE_M)
     left = np.linalg.norm(it.truth.inverse.points(it.frame_m) - it.base_m, axis=1)
     assume(math.sqrt(np.mean(left**2)) > 0.05)
-    (told,) = check(it.truth.inverse, it.pairs).warnings
+    (told,) = check_frame(it.truth.inverse, it.pairs).warnings
     assert told.code == "inverted"
 
 
 @given(seeds, counts)
 def test_scaled_and_mirrored_check_points_are_told(seed: int, count: int) -> None:
     it = scene(seed, count)
-    found = check(it.truth, pairs(it.frame_m * 1000, it.base_m))
+    found = check_frame(it.truth, pairs(it.frame_m * 1000, it.base_m))
     assert [row.code for row in found.warnings] == ["scaled", "large_residual"]
-    found = check(it.truth, pairs(it.frame_m * [1, 1, -1], it.base_m))
+    found = check_frame(it.truth, pairs(it.frame_m * [1, 1, -1], it.base_m))
     assert [row.code for row in found.warnings] == ["mirrored", "large_residual"]
 
 
 def test_a_pose_that_disagrees_is_told_with_what_would_agree() -> None:
     it = scene(0, 6, NOISE_M)
     moved = RigidTransform((0.0, 0.0, 0.0), it.truth.quaternion_xyzw)
-    (told,) = check(moved, it.pairs).warnings
+    (told,) = check_frame(moved, it.pairs).warnings
     assert told.code == "large_residual"
     assert "a pose estimated from the pairs leaves" in told.detail
     with pytest.raises(InvalidProblem, match="check_pairs"):
-        check(moved, [])
+        check_frame(moved, [])

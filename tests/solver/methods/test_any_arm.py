@@ -4,10 +4,11 @@ import pytest
 from solver import Options, Problem, solve, verify_plan
 from solver.approach.cut_in.cut_in import retreat_rows
 from solver.approach.task.candidate import Candidate
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.on_rail import split_rail
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.rail import at_rail, rail_effort, rail_positions
 from solver.methods.registry import METHODS
+from solver.problem.options import Weights
 from solver.problem.solution import Reason
 from tests.solver.methods.on_rail import ROBOT, TARGETS, task_of
 
@@ -16,7 +17,7 @@ from tests.solver.methods.on_rail import ROBOT, TARGETS, task_of
 def test_the_best_over_the_grid_is_the_best_of_every_position(norm: str) -> None:
     """Skipping positions that travel alone makes too dear leaves none out that matters."""
     task = task_of(TARGETS[1], method="floating_z", norm=norm, samples=24)
-    rail = rail_of(task.robot, task.tool)
+    rail = split_rail(task.robot)
     assert rail is not None
     outcome = METHODS["floating_z"].solve(task)
     assert isinstance(outcome, Candidate)
@@ -34,7 +35,7 @@ def test_the_best_over_the_grid_is_the_best_of_every_position(norm: str) -> None
 
 
 @pytest.mark.parametrize("weights", ["uniform", "torque"])
-def test_plans_on_the_rail_verify(weights: str) -> None:
+def test_plans_on_the_rail_verify(weights: Weights) -> None:
     options = Options(method="floating_z", weights=weights, samples=24)
     plan = solve(Problem(ROBOT, TARGETS, options=options))
     assert [approach.status for approach in plan.approaches] == ["planned", "planned", "infeasible"]

@@ -21,6 +21,7 @@ from solver.methods.nlp.quadratic import QP_SOLVERS
 from solver.methods.relaxed.approach import between_neighbours
 from solver.methods.semi_analytic import solve_ssas
 from solver.problem.effort import posture_effort
+from solver.problem.options import QpSolverName
 from solver.tolerances import LIMIT_EXCESS_RAD
 from tests.solver.problems import data_set_3, random_targets
 
@@ -73,7 +74,9 @@ def test_the_programme_finds_its_own_way_from_a_bad_start(
 
 @pytest.mark.parametrize("qp_solver", QP_SOLVERS)
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_solvers_of_quadratic_programmes_agree(tabletop: Robot, qp_solver: str, norm: str) -> None:
+def test_solvers_of_quadratic_programmes_agree(
+    tabletop: Robot, qp_solver: QpSolverName, norm: str
+) -> None:
     for task in tasks(tabletop, 22, 8, norm=norm, qp_solver=qp_solver):
         best = best_on_arcs(task)
         assert best is not None

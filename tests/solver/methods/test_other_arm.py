@@ -8,6 +8,7 @@ from solver.approach.numerical.warm_start import polished_thinning
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.kinematics.forward import jacobian
 from solver.problem.effort import posture_effort
+from solver.problem.options import Norm
 from solver.robots.model import Array
 from tests.solver.kinematics.arms import seven_joints, ur5
 from tests.solver.problems import reachable_targets
@@ -46,7 +47,7 @@ def scattered(task: ApproachTask, rng: np.random.Generator, draws: int, steps: i
 
 @pytest.mark.parametrize("robot", [ur5(), seven_joints()], ids=lambda robot: robot.name)
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_a_random_scatter_finds_nothing_cheaper(robot: Robot, norm: str) -> None:
+def test_a_random_scatter_finds_nothing_cheaper(robot: Robot, norm: Norm) -> None:
     targets = reachable_targets(robot, seed=5, count=4)
     options = Options(norm=norm, order="independent", include=("path",))
     problem = Problem(robot, targets, options=options)

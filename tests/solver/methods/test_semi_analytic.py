@@ -5,6 +5,7 @@ import pytest
 from solver import Options, Problem, Robot
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
+from solver.problem.options import Norm
 from tests.solver.methods.brute_force import least_effort_of_sweep
 from tests.solver.problems import random_targets
 
@@ -12,7 +13,7 @@ ANGLES = 65_536
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_not_worse_than_a_sweep(tabletop: Robot, norm: str) -> None:
+def test_not_worse_than_a_sweep(tabletop: Robot, norm: Norm) -> None:
     targets = random_targets(seed=11, count=50 if norm == "l1" else 10)
     problem = Problem(tabletop, targets, options=Options(norm=norm, position_margin_m=0.0))
     solved = 0

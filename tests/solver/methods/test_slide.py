@@ -8,10 +8,11 @@ import pytest
 from solver import Options, Problem, Target, solve, verify_plan
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import ApproachTask, approach_task
-from solver.kinematics.families import rail_of
+from solver.kinematics.families.on_rail import split_rail
 from solver.kinematics.forward import forward_kinematics
 from solver.methods.rail import at_rail, rail_effort, rail_positions
 from solver.methods.slide import cheapest_position
+from solver.problem.options import Norm
 from tests.solver.methods.on_rail import ROBOT, TARGETS, task_of
 
 # Its effort falls between two positions of the grid up to where an arc ends.
@@ -32,14 +33,14 @@ def reachable_targets(seed: int, count: int) -> list[Target]:
 
 
 def effort_at(task: ApproachTask, place: float) -> float:
-    rail = rail_of(task.robot, task.tool)
+    rail = split_rail(task.robot)
     assert rail is not None
     best = best_on_arcs(at_rail(task, rail, place))
     return math.inf if best is None else best.effort + rail_effort(task, place)
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_no_position_of_a_dense_sweep_is_cheaper(norm: str) -> None:
+def test_no_position_of_a_dense_sweep_is_cheaper(norm: Norm) -> None:
     targets = [BESIDE_AN_END, *reachable_targets(seed=7, count=5)]
     problem = Problem(
         ROBOT, targets, options=Options(norm=norm, order="independent", include=("path",))
@@ -60,7 +61,7 @@ def test_no_position_of_a_dense_sweep_is_cheaper(norm: str) -> None:
 
 def test_the_slide_stands_at_a_minimum_that_the_grid_does_not_have() -> None:
     task = task_of(BESIDE_AN_END)
-    rail = rail_of(task.robot, task.tool)
+    rail = split_rail(task.robot)
     assert rail is not None
     found = cheapest_position(task, rail)
     assert found is not None
@@ -73,6 +74,6 @@ def test_the_slide_stands_at_a_minimum_that_the_grid_does_not_have() -> None:
 
 def test_no_position_where_there_is_no_approach() -> None:
     task = task_of(TARGETS[2])
-    rail = rail_of(task.robot, task.tool)
+    rail = split_rail(task.robot)
     assert rail is not None
     assert cheapest_position(task, rail) is None

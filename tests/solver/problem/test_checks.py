@@ -12,7 +12,7 @@ def pointers(robot: Robot, **changes: object) -> list[str]:
     """Pointers of the faults of data set 3's first target with some fields changed."""
     arguments: dict[str, object] = {"targets": [GOOD], **changes}
     with pytest.raises(InvalidProblem) as raised:
-        Problem(robot, **arguments)  # type: ignore[arg-type]
+        Problem(robot, **arguments)  # type: ignore[call-overload]
     return [fault.pointer for fault in raised.value.faults]
 
 
@@ -40,10 +40,10 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
 @pytest.mark.parametrize(
     ("options", "pointer"),
     [
-        (Options(method="magic"), "#/options/method"),
-        (Options(order="alphabetical"), "#/options/order"),
-        (Options(norm="l3"), "#/options/norm"),
-        (Options(weights="heavy"), "#/options/weights"),
+        (Options(method="magic"), "#/options/method"),  # type: ignore[arg-type]
+        (Options(order="alphabetical"), "#/options/order"),  # type: ignore[arg-type]
+        (Options(norm="l3"), "#/options/norm"),  # type: ignore[arg-type]
+        (Options(weights="heavy"), "#/options/weights"),  # type: ignore[arg-type]
         (Options(path_points=1), "#/options/path_points"),
         (Options(standoff_m=math.nan), "#/options/standoff_m"),
         (Options(standoff_m=0.0), "#/options/standoff_m"),
@@ -52,8 +52,8 @@ def test_targets_that_make_no_sense(tabletop: Robot, target: Target, pointer: st
         (Options(strike_zone_m=0.6, standoff_m=0.7), "#/options/strike_zone_m"),
         (Options(tilt_tolerance_rad=0.9), "#/options/tilt_tolerance_rad"),
         (Options(tilt_tolerance_rad=math.nan), "#/options/tilt_tolerance_rad"),
-        (Options(nlp_backend="snopt"), "#/options/nlp_backend"),
-        (Options(qp_solver="gurobi"), "#/options/qp_solver"),
+        (Options(nlp_backend="snopt"), "#/options/nlp_backend"),  # type: ignore[arg-type]
+        (Options(qp_solver="gurobi"), "#/options/qp_solver"),  # type: ignore[arg-type]
         (Options(certify=True, tilt_tolerance_rad=0.1), "#/options/certify"),
         (Options(samples=0), "#/options/samples"),
         (Options(joint_weights=(1, 1)), "#/options/joint_weights"),
@@ -76,5 +76,6 @@ def test_other_fields_that_make_no_sense(tabletop: Robot) -> None:
 
 
 def test_all_faults_are_told_at_once(tabletop: Robot) -> None:
-    found = pointers(tabletop, tool="chainsaw", options=Options(norm="l3"), targets=[])
+    options = Options(norm="l3")  # type: ignore[arg-type]
+    found = pointers(tabletop, tool="chainsaw", options=options, targets=[])
     assert found == ["#/tool", "#/options/norm", "#/targets"]

@@ -11,7 +11,7 @@ from solver.approach.task.feasibility import effort
 from solver.approach.task.task import approach_task
 from solver.compiled import kernel
 from solver.problem.effort import cost_scale, joint_cost, joint_costs, posture_effort
-from solver.problem.options import NORMS
+from solver.problem.options import NORMS, Norm
 from solver.robots.model import Array
 from solver.sequencing.min_plus import chain_effort, relax
 from tests.solver.problems import random_targets
@@ -27,7 +27,7 @@ def _cost(change: float, squared: bool) -> float:
 
 
 @given(POSTURES, POSTURES, WEIGHTS, st.sampled_from(NORMS))
-def test_kernels_and_arrays_agree(q: Array, reference: Array, weights: Array, norm: str) -> None:
+def test_kernels_and_arrays_agree(q: Array, reference: Array, weights: Array, norm: Norm) -> None:
     squared, change = norm == "l2", q - reference
     assert [_cost(one, squared) for one in change] == joint_costs(change, norm).tolist()
     expected = posture_effort(q, reference, weights.tolist(), norm)
@@ -41,7 +41,7 @@ def test_kernels_and_arrays_agree(q: Array, reference: Array, weights: Array, no
 
 
 @pytest.mark.parametrize("norm", NORMS)
-def test_a_task_counts_as_arrays_do(tabletop: Robot, norm: str) -> None:
+def test_a_task_counts_as_arrays_do(tabletop: Robot, norm: Norm) -> None:
     options = Options(norm=norm, joint_weights=(5, 4, 3, 0, 0.5, 1))
     problem = Problem(tabletop, random_targets(1, 1), options=options)
     task = approach_task(problem, problem.targets[0], problem.start)

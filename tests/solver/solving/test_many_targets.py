@@ -6,6 +6,7 @@ import pytest
 from solver import Options, Problem, Robot, Target, load_robot, solve, verify
 from solver.approach.optimum.batch import closed_form_optima
 from solver.comparison.targets import as_targets, drawn_at_edges
+from solver.problem.options import Norm
 from solver.problem.solution import PLANNED
 from solver.solving.many_targets import plan_many, plan_stops, plans_together
 from solver.solving.one_target import plan_target
@@ -26,7 +27,7 @@ def edge_targets(robot: Robot, count: int) -> list[Target]:
 @pytest.mark.parametrize("symmetric", [False, True])
 @pytest.mark.parametrize("name", ["tabletop", "puma560"])
 @pytest.mark.parametrize("margin_m", [0.0, 0.001])
-def test_together_is_as_one_by_one(name: str, symmetric: bool, norm: str, margin_m: float) -> None:
+def test_together_is_as_one_by_one(name: str, symmetric: bool, norm: Norm, margin_m: float) -> None:
     robot = load_robot(name)
     options = Options(
         method="ssas", order="independent", norm=norm, symmetric_tool=symmetric,

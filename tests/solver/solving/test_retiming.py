@@ -9,6 +9,7 @@ import pytest
 
 from solver import Approach, Options, Plan, Problem, Robot, Target, load_robot, solve, verify
 from solver.exceptions import RetimingFailed
+from solver.problem.options import MethodName
 from solver.solving.retiming import ChosenApproach, retime
 from tests.solver.problems import DATA_SET_3, data_set_3, random_targets
 
@@ -33,7 +34,7 @@ def choice(approach: Approach) -> ChosenApproach:
 
 
 @pytest.mark.parametrize("method", ["floating_z", "ssas", "ncos"])
-def test_order_given_has_the_trajectories_of_the_plan(tabletop: Robot, method: str) -> None:
+def test_order_given_has_the_trajectories_of_the_plan(tabletop: Robot, method: MethodName) -> None:
     far = Target("far", (0.0, 2.0, 0.1), (0, 0, 1))
     targets = (DATA_SET_3[0], far, *DATA_SET_3[1:])
     plan = solve(Problem(tabletop, targets, options=Options(method=method)))
@@ -112,7 +113,7 @@ TAMPERED: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("name", TAMPERED)
-def test_what_was_tampered_with_is_refused(plan: Plan, name: str) -> None:
+def test_what_was_tampered_with_is_refused(plan: Plan, name: MethodName) -> None:
     choices = chosen(plan)
     choices[1] = TAMPERED[name](choices[1])
     with pytest.raises(RetimingFailed) as raised:

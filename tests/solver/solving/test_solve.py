@@ -9,6 +9,7 @@ from solver.approach.cut_in.broken_between_rows import broken_between
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import approach_task
 from solver.methods.semi_analytic import solve_ssas
+from solver.problem.options import MethodName, Norm
 from tests.solver.problems import DATA_SET_3, data_set_3, random_targets
 
 
@@ -23,7 +24,7 @@ def comparable(plan: Plan) -> list[object]:
 
 
 @pytest.mark.parametrize("method", ["floating_z", "ssas", "ncos"])
-def test_data_set_3_is_planned_whole(tabletop: Robot, method: str) -> None:
+def test_data_set_3_is_planned_whole(tabletop: Robot, method: MethodName) -> None:
     plan = solve(data_set_3(tabletop, method=method))
     assert (plan.planned, plan.infeasible) == (5, 0)
     assert [approach.target_id for approach in plan.approaches] == ["1", "2", "3", "4", "5"]
@@ -122,7 +123,7 @@ def test_straightness_asked_for_is_kept(tabletop: Robot) -> None:
 
 
 @pytest.mark.parametrize("method", ["floating_z", "ssas", "ncos"])
-def test_a_chosen_order_has_the_infeasible_last(tabletop: Robot, method: str) -> None:
+def test_a_chosen_order_has_the_infeasible_last(tabletop: Robot, method: MethodName) -> None:
     far = Target("far", (0.0, 2.0, 0.1), (0, 0, 1))
     options = Options(method=method, order="optimal")
     plan = solve(Problem(tabletop, [far, *DATA_SET_3], options=options))
@@ -136,7 +137,7 @@ def test_a_chosen_order_has_the_infeasible_last(tabletop: Robot, method: str) ->
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 def test_batches_planned_as_one_verify_and_are_cheaper_than_greedy(
-    tabletop: Robot, norm: str
+    tabletop: Robot, norm: Norm
 ) -> None:
     problem = Problem(
         tabletop, random_targets(seed=45, count=40), options=Options(method="ssas", norm=norm)

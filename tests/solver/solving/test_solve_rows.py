@@ -9,6 +9,7 @@ from solver import Approach, Options, Problem, Robot, Target, load_robot, solve
 from solver.comparison.targets import as_targets, drawn_at_edges
 from solver.kinematics.forward import forward_kinematics, jacobian
 from solver.kinematics.numerical import postures_behind
+from solver.problem.options import MethodName
 from solver.tolerances import JOINT_RATE_RAD_M
 from tests.solver.problems import random_targets
 
@@ -43,7 +44,7 @@ def fastest(robot: Robot, approach: Approach) -> float:
 @pytest.mark.parametrize("made", [lambda robot, seed, n: random_targets(seed, n), at_edges])
 @pytest.mark.parametrize("name", ["tabletop", "puma560"])
 def test_answers_are_the_same_whatever_rows_are_sent(
-    name: str, made: Callable[[Robot, int, int], list[Target]]
+    name: MethodName, made: Callable[[Robot, int, int], list[Target]]
 ) -> None:
     robot = load_robot(name)
     options = Options(method="ssas", order="independent", include=("path",))
@@ -74,7 +75,7 @@ def test_durations_and_bounds_are_the_same_whatever_rows_are_sent(tabletop: Robo
 
 @pytest.mark.parametrize("method", ["ssas", "as", "floating_z", "ncos"])
 @pytest.mark.parametrize("name", ["tabletop", "puma560"])
-def test_no_joint_is_too_fast_anywhere(name: str, method: str) -> None:
+def test_no_joint_is_too_fast_anywhere(name: str, method: MethodName) -> None:
     robot = load_robot(name)
     options = Options(method=method, order="independent", include=("path",), path_points=2)
     plan = solve(Problem(robot, [*at_edges(robot, 19, 60), SWINGS], options=options))

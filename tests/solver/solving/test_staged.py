@@ -3,6 +3,7 @@ from dataclasses import replace
 import pytest
 
 from solver import Options, Plan, Problem, Robot, load_robot, solve
+from solver.problem.options import MethodName, Order
 from solver.problem.solution import INFEASIBLE, Approach
 from solver.solving.staged import (
     choice_from_json,
@@ -31,7 +32,9 @@ def in_parts(problem: Problem, size: int) -> Plan:
 @pytest.mark.parametrize("order", ["independent", "given", "optimal"])
 @pytest.mark.parametrize("method", ["floating_z", "ssas", "ncos"])
 @pytest.mark.parametrize("size", [1, 4, 100])
-def test_parts_make_the_same_plan(tabletop: Robot, order: str, method: str, size: int) -> None:
+def test_parts_make_the_same_plan(
+    tabletop: Robot, order: Order, method: MethodName, size: int
+) -> None:
     options = Options(order=order, method=method, include=("path",))
     problem = Problem(tabletop, random_targets(seed=81, count=12), options=options)
     whole = solve(problem)

@@ -98,3 +98,12 @@ def test_bounds_and_proofs_are_told(request_body: Body) -> None:
         assert [approach["status"] for approach in planned] == ["planned"] * 5
         assert all(("lower_bound" in approach) is certify for approach in planned)
         assert far["reason"].get("proven") is (True if certify else None)
+
+
+def test_it_is_the_solvers_own_plain_values(request_body: Body) -> None:
+    request_body["targets"].append(OUT_OF_REACH)
+    plan = solve(problem_from_wire(parse_request(json.dumps(request_body).encode())))
+    wire = plan_to_wire(plan, "an id")
+    assert wire.pop("id") == "an id"
+    assert wire.pop("version")
+    assert wire == plan.to_dict()

@@ -12,6 +12,7 @@ from solver.approach.bounds.certificate import certify_task
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.methods.registry import METHODS
+from solver.problem.options import MethodName, Norm, Order
 from tests.solver.approach.targets import SETS, straight_wrists
 from tests.solver.kinematics.arms import arms
 from tests.solver.methods.brute_force import least_effort_of_sweep
@@ -62,7 +63,7 @@ def assert_certified(task: ApproachTask) -> bool:
 @pytest.mark.parametrize("kind", SETS)
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 def test_bounds_are_below_a_sweep_and_near_the_optimum(
-    tabletop: Robot, kind: str, norm: str
+    tabletop: Robot, kind: str, norm: Norm
 ) -> None:
     options = Options(norm=norm, symmetric_tool=norm == "l2", position_margin_m=0.0)
     targets = SETS[kind](tabletop, 25)
@@ -177,7 +178,9 @@ def test_a_spent_budget_leaves_a_valid_bound_and_says_so(tabletop: Robot) -> Non
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("order", ["independent", "given"])
-def test_plans_carry_bounds_for_every_method(tabletop: Robot, method: str, order: str) -> None:
+def test_plans_carry_bounds_for_every_method(
+    tabletop: Robot, method: MethodName, order: Order
+) -> None:
     options = Options(method=method, order=order, certify=True, position_margin_m=0.0)
     plan = solve(Problem(tabletop, targets_for(method, 70, 20), options=options))
     assert plan.planned >= 5

@@ -46,7 +46,7 @@ def test_postures_of_a_cell_are_in_its_enclosure(
     arm: object, position: tuple[float, ...], direction: tuple[float, ...], low: float,
     exponent: float, shares: tuple[float, float], branch: int, retreat: float,
 ) -> None:  # fmt: skip
-    problem = Problem(arm, [Target("1", position, direction)])  # type: ignore[arg-type]
+    problem = Problem(arm, [Target("1", position, direction)])  # type: ignore[call-overload]
     task = approach_task(problem, problem.targets[0], problem.start).for_kernels(1)
     width = 10.0**exponent
     q, tight, slopes, middle = (np.empty((6, 2)) for _ in range(4))

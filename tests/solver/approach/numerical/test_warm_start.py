@@ -23,6 +23,7 @@ from solver.approach.task.task import approach_task
 from solver.kinematics.forward import forward_kinematics
 from solver.kinematics.numerical import chain_of, polish, postures_behind
 from solver.methods.registry import METHODS
+from solver.problem.options import MethodName, Norm
 from solver.problem.solution import Reason
 from solver.robots.model import Array
 from solver.solving.retiming import ChosenApproach, retime
@@ -32,7 +33,7 @@ from tests.solver.problems import reachable_targets
 
 @pytest.mark.parametrize("robot", [ur5(), seven_joints()], ids=lambda robot: robot.name)
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_ncos_plans_what_is_known_to_be_reachable(robot: Robot, norm: str) -> None:
+def test_ncos_plans_what_is_known_to_be_reachable(robot: Robot, norm: Norm) -> None:
     targets = reachable_targets(robot, seed=71, count=12)
     plan = solve(Problem(robot, targets, options=Options(norm=norm, symmetric_tool=True)))
     assert plan.planned == len(targets)
@@ -75,7 +76,7 @@ def test_never_cheaper_than_the_closed_form_and_seldom_much_dearer() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if name != "ncos"])
-def test_closed_form_methods_say_that_they_do_not_apply(name: str) -> None:
+def test_closed_form_methods_say_that_they_do_not_apply(name: MethodName) -> None:
     robot = ur5()
     problem = Problem(robot, reachable_targets(robot, 74, 2), options=Options(method=name))
     for approach in solve(problem).approaches:

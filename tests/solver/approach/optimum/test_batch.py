@@ -6,12 +6,13 @@ from solver.approach.optimum.batch import closed_form_optima
 from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
+from solver.problem.options import Norm
 from solver.problem.retreats import even_retreats
 from tests.solver.problems import random_targets
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
-def test_a_batch_has_the_optima_of_its_targets(tabletop: Robot, norm: str) -> None:
+def test_a_batch_has_the_optima_of_its_targets(tabletop: Robot, norm: Norm) -> None:
     targets = random_targets(51, 60)
     options = Options(
         norm=norm, symmetric_tool=norm == "l2", include=("path",), position_margin_m=0.0

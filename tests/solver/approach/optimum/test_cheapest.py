@@ -8,6 +8,7 @@ from solver.approach.optimum.batch import closed_form_optima
 from solver.approach.optimum.batch_search import NO_BRANCH
 from solver.approach.optimum.on_arcs import best_on_arcs
 from solver.approach.task.task import approach_task
+from solver.problem.options import Norm
 from solver.robots.model import Array
 from solver.tolerances import EFFORT_ERROR_RELATIVE
 from tests.solver.approach.targets import SETS
@@ -35,7 +36,7 @@ def drawn(robot: Robot, seed: int, count: int) -> Array:
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 @pytest.mark.parametrize("symmetric", [False, True])
-def test_from_any_posture(tabletop: Robot, norm: str, symmetric: bool) -> None:
+def test_from_any_posture(tabletop: Robot, norm: Norm, symmetric: bool) -> None:
     targets = random_targets(71, 400)
     options = Options(norm=norm, symmetric_tool=symmetric, include=("path",), position_margin_m=0.0)
     problem = Problem(tabletop, targets, options=options)
@@ -44,7 +45,7 @@ def test_from_any_posture(tabletop: Robot, norm: str, symmetric: bool) -> None:
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 @pytest.mark.parametrize("kind", SETS)
-def test_hard_targets(tabletop: Robot, kind: str, norm: str) -> None:
+def test_hard_targets(tabletop: Robot, kind: str, norm: Norm) -> None:
     targets = SETS[kind](tabletop, 40)
     problem = Problem(
         tabletop, targets, options=Options(norm=norm, include=("path",), position_margin_m=0.0)

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Reason, Robot, Target, solve
-from solver.approach.arcs.arcs import sample_task, task_arcs
+from solver.approach.arcs.arcs import sample_angles, sample_task, task_arcs
 from solver.approach.refusal.closest import Stage, closest_failure
 from solver.approach.refusal.diagnosis import diagnose
 from solver.approach.refusal.nearest_change import displaced
+from solver.approach.refusal.tolerances import DIAGNOSED_ANGLES
 from solver.approach.task.task import ApproachTask, approach_task
 from tests.solver.problems import random_targets
 
@@ -56,6 +57,24 @@ def test_the_displaced_target_is_planned_there(tabletop: Robot, symmetric: bool)
         counted += 1
     assert counted > 10
     assert seen >= {"out_of_reach", "joint_limit"}
+
+
+def test_of_two_tool_sides_the_closer_one_is_told(tabletop: Robot) -> None:
+    """Which is now the one, now the other."""
+    told = set()
+    for task, reason in refused(tabletop, 72, 120, symmetric_tool=True):
+        angles = sample_angles(DIAGNOSED_ANGLES)
+        stages = {
+            side: closest_failure(task.for_kernels(side), angles, True)[:2]
+            for side in task.tool_sides
+        }
+        closer = max(stages, key=lambda side: stages[side])
+        if stages[1] == stages[-1]:
+            continue
+        margin = reason.margin_m if reason.margin_rad is None else reason.margin_rad
+        assert margin == pytest.approx(stages[closer][1])
+        told.add(closer)
+    assert told == {1, -1}
 
 
 def test_no_direction_leads_nearer(tabletop: Robot) -> None:

@@ -19,7 +19,7 @@ from solver.approach.task.packed import (
 from solver.approach.task.packing import packed_targets
 from solver.approach.task.task import ApproachTask, approach_task
 from solver.kinematics.spherical_wrist import wrist_geometry
-from solver.problem.options import NORMS
+from solver.problem.options import NORMS, Norm
 from tests.solver.problems import random_targets
 
 
@@ -34,7 +34,7 @@ def test_columns_lie_side_by_side() -> None:
 
 @pytest.mark.parametrize("robot", [load_robot("tabletop"), load_robot("puma560")], ids=str)
 @pytest.mark.parametrize("norm", NORMS)
-def test_every_field_comes_out_again(robot: Robot, norm: str) -> None:
+def test_every_field_comes_out_again(robot: Robot, norm: Norm) -> None:
     rng = np.random.default_rng(3)
     options = Options(norm=norm, symmetric_tool=True, joint_weights=rng.uniform(0, 9, 6).tolist())
     targets, start = random_targets(4, 12), rng.uniform(robot.lower, robot.upper)

@@ -13,6 +13,7 @@ from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.displacement import displacement_margin
 from solver.approach.uncertainty.robustness import needed_margin, path_displacement_margin
 from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.problem.options import MethodName
 from solver.problem.solution import Arc
 from solver.robots.model import Array
 from tests.solver.kinematics.arms import arms
@@ -138,7 +139,7 @@ def test_robust_arcs_are_where_the_margin_is_enough(tabletop: Robot) -> None:
 
 
 @pytest.mark.parametrize("method", ["floating_z", "ssas", "ncos"])
-def test_planned_answers_bear_their_uncertainty(tabletop: Robot, method: str) -> None:
+def test_planned_answers_bear_their_uncertainty(tabletop: Robot, method: MethodName) -> None:
     targets = random_targets(seed=66, count=25)
     planned = []
     for std in (None, 0.0, 0.001, 0.004):
