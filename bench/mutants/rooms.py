@@ -24,14 +24,13 @@ def sources_of(room: str) -> tuple[Path, ...]:
     return tuple(sorted((REPOSITORY / room).rglob("*.py")))
 
 
-def mirror_of(source: Path) -> Path:
-    """The test file that mirrors a source; without one the folder of the tests beside it."""
-    inside = source.relative_to(REPOSITORY)
-    mirror = REPOSITORY / "tests" / inside.parent / f"test_{source.name}"
-    folder = mirror.parent
-    while not folder.exists():
+def mirror_of(source: Path) -> tuple[Path, ...]:
+    """The test files that mirror a source: named after it, or without one all of their folder."""
+    folder = REPOSITORY / "tests" / source.relative_to(REPOSITORY).parent
+    while not list(folder.glob("test_*.py")):
         folder = folder.parent
-    return mirror if mirror.exists() else folder
+    own = (*folder.glob(f"test_{source.stem}.py"), *folder.glob(f"test_{source.stem}_*.py"))
+    return tuple(sorted(own or folder.glob("test_*.py")))
 
 
 def is_compiled(source: Path) -> bool:
@@ -47,7 +46,7 @@ def _compiled() -> frozenset[Path]:
     return frozenset(kernel_sources())
 
 
-def digest_of(files: tuple[Path, ...] | list[Path], more: str = "") -> str:
+def digest_of(files: tuple[Path, ...], more: str = "") -> str:
     """A name for what files have in them."""
     digest = hashlib.sha256(more.encode())
     for file in files:

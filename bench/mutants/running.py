@@ -44,7 +44,9 @@ def run(mutants: Sequence[Mutant], kept: Path) -> Iterator[Outcome]:
         yield from pool.map(lambda mutant: _outcome(mutant, chosen), mutants)
 
 
-def _outcome(mutant: Mutant, chosen: Mapping[tuple[Path, bool], dict[str, float]]) -> Outcome:
+def _outcome(
+    mutant: Mutant, chosen: Mapping[tuple[tuple[Path, ...], bool], dict[str, float]]
+) -> Outcome:
     interpreted = is_compiled(mutant.source)
     tests = chosen[mirror_of(mutant.source), interpreted]
     if not tests:

@@ -1,14 +1,19 @@
 """Which mutants are made of a room: a seeded few of all that its files have."""
 
 import random
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 
 from bench.mutants.operators import operators
+
+_GUARD: Final = re.compile(r"\b(frozen|strict)=$")
+"""Against mistakes of who writes the code: nothing that runs depends on it."""
 
 
 @dataclass(frozen=True)
@@ -37,13 +42,16 @@ class Mutant:
 
 def mutants_of(source: Path) -> list[Mutant]:
     """All mutants of a file."""
-    tree = get_ast(source.read_text(encoding="utf-8"))
+    code = source.read_text(encoding="utf-8")
+    tree, lines = get_ast(code), code.splitlines()
     found: list[Mutant] = []
     for name, operator in operators().items():
-        places = (
-            start for node in ast_nodes(tree) for start, _ in operator.mutation_positions(node)
-        )
-        found += [Mutant(source, name, k, line) for k, (line, _) in enumerate(places)]
+        places = (place for node in ast_nodes(tree) for place in operator.mutation_positions(node))
+        found += [
+            Mutant(source, name, k, line)
+            for k, ((line, column), _) in enumerate(places)
+            if not _GUARD.search(lines[line - 1][:column])
+        ]
     return found
 
 

@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Robot, load_robot, solve
+from solver.approach.cut_in.cut_in import many_retreat_rows
 from solver.approach.uncertainty.robustness import displacement_margins
+from solver.kinematics.forward import many_poses
+from solver.kinematics.spherical_wrist import inverse_kinematics
+from solver.problem.retreats import looked_at_retreats
 from solver.solving import many_targets
 from solver.solving.many_targets import plan_many
 from solver.verification.displacement import displacement_overshoots
@@ -91,3 +95,29 @@ def test_an_arm_on_a_rail_is_judged_where_the_rail_stands() -> None:
         more = replace(approach, displacement_margin_m=3.0 * approach.displacement_margin_m + 0.01)
         assert verify(problem, approach, problem.start).accepted
         assert not verify(problem, more, problem.start).accepted
+
+
+@pytest.mark.parametrize("lean", [0.03, 0.1, 0.2])
+def test_nearly_straight_wrists_bear_as_much_as_straightens_them(
+    tabletop: Robot, lean: float
+) -> None:
+    """Postures with joint 5 almost at zero, in the middle of all other limits."""
+    tool = tabletop.tools[0]
+    problem = planned(tabletop, 1, 1)
+    rng = np.random.default_rng(8)
+    drawn = rng.uniform(0.4 * tabletop.lower, 0.4 * tabletop.upper, (200, 6))
+    drawn[:, 4] = lean
+    found = inverse_kinematics(tabletop, tool, many_poses(tabletop, tool, drawn))
+    own, branches = np.nonzero(np.abs(found.joints - drawn[:, None]).max(axis=-1) < 1e-9)
+    thinning = drawn[own]
+    margins = displacement_margins(tabletop, tool, problem.options, branches, thinning)
+    retreats = looked_at_retreats(problem.options)
+    paths = many_retreat_rows(tabletop, tool, thinning, branches, retreats)
+    problem = replace(problem, options=replace(problem.options, path_points=len(retreats)))
+    # What straightens the wrist is nearer than any limit where it hardly leans.
+    straightens = (margins > 1e-3) & (margins < 0.3 * abs(lean))
+    assert straightens.sum() >= 20
+    paths, branches, margins = paths[straightens], branches[straightens], margins[straightens]
+    assert displacement_overshoots(problem, branches, paths, margins).max() <= DISPLACED_ERROR_M
+    beyond = displacement_overshoots(problem, branches, paths, 1.15 * margins)
+    assert np.mean(beyond > DISPLACED_ERROR_M) > 0.95

@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver import Problem
+from solver import Options, Problem, Robot
 from solver.problem.solution import SolverReport
+from solver.solving.many_targets import plan_many
+from solver.solving.one_target import plan_target
 from solver.verification.many import ProposedPaths, judge_many, verify_many
+from tests.solver.problems import random_targets
 from tests.solver.verification.spoiling import too_fast, untimed
 from tests.solver.verification.test_verify_residuals import along_branch
 
@@ -167,3 +170,23 @@ def test_the_rows_are_the_residuals() -> None:
     found = {residual.name for residual in verify_many(*honest()).residuals}
     broken = set(ROWS).union(*(too for _, too in ROWS.values()), *LIMITS.values())
     assert found == broken | MEASURED | {STRAIGHT}
+
+
+@pytest.mark.parametrize("wished_m", [0.001, 0.05])
+def test_what_is_told_of_many_is_what_is_told_of_one(tabletop: Robot, wished_m: float) -> None:
+    options = Options(
+        method="ssas", order="independent", include=("path",), position_margin_m=wished_m
+    )
+    problem = Problem(tabletop, random_targets(93, 40), options)
+    many = plan_many(problem, problem.targets)
+    assert len(many) >= 8
+    short = 0
+    for target_id, approach in many.items():
+        alone = plan_target(problem, problem.targets_by_id[target_id], problem.start)
+        for field in ("position_margin_m", "margin_short", "branch", "tool_side"):
+            assert getattr(approach, field) == getattr(alone, field), field
+        for field in ("effort", "margin_rad", "displacement_margin_m", "approach_angle_rad"):
+            assert getattr(approach, field) == pytest.approx(getattr(alone, field), abs=1e-6)
+        assert approach.path_deviation_m == pytest.approx(alone.path_deviation_m, abs=1e-9)
+        short += approach.margin_short is True
+    assert (short > 0) == (wished_m > 0.01)

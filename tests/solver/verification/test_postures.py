@@ -25,6 +25,11 @@ def test_postures_are_those_of_the_closed_form_on_every_branch(robot: Robot) -> 
     told = arms_there.postures(arms_there.centres_behind(BEHIND_M), near)
     reached = told[REACH] > 1e-6
     assert reached[:, -1].mean() > 0.9
+    # As the kernel has it, or where the wrist centre comes near the waist's axis.
+    across = np.hypot(*arms_there.centres_behind(BEHIND_M)[:2, :, -1])
+    beside = across - abs(arms_there.geometry.shoulder)
+    inside = np.minimum(found.reach_margin_m[rows, branches // 2], beside)
+    assert told[REACH, :, -1] == pytest.approx(inside, abs=1e-12)
     poses = many_poses(robot, tool, postures)
     for k, behind in enumerate(BEHIND_M):
         there = poses.copy()

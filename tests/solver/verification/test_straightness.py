@@ -23,16 +23,17 @@ from tests.solver.problems import reachable_targets
 ROBOTS = [*arms()[:4], load_robot("puma560_rail"), ur5(), seven_joints()]
 
 
-def untimed(robot: Robot, rows: int) -> Plan:
+def untimed(robot: Robot, rows: int, **options: object) -> Plan:
     closed_form = len(robot.joints) == 6 and robot.name != "ur5"
-    options = Options(
+    chosen = Options(
         method="ssas" if closed_form else "ncos",
         order="independent",
         include=("path",),
         path_points=rows,
+        **options,  # type: ignore[arg-type]
     )
     targets = reachable_targets(robot, 5, 40 if closed_form else 6)
-    return solve(Problem(robot, targets, options=options))
+    return solve(Problem(robot, targets, chosen))
 
 
 def cut_ins(plan: Plan) -> tuple[ClaimedPaths, np.ndarray | None]:
@@ -46,22 +47,33 @@ def cut_ins(plan: Plan) -> tuple[ClaimedPaths, np.ndarray | None]:
     return ClaimedPaths(paths, poses[:, :3, 3], poses[:, :3, :3]), known
 
 
-@pytest.mark.parametrize("rows", [2, 20])
+@pytest.mark.parametrize(
+    ("rows", "options"),
+    [
+        (2, {}),
+        (20, {}),
+        # Halved several times until it is straight, and from ends that are far apart.
+        (20, {"straightness_m": 1e-6}),
+        (2, {"standoff_m": 0.15}),
+    ],
+)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
-def test_rows_deviations_and_margins_are_those_of_the_methods(robot: Robot, rows: int) -> None:
-    plan = untimed(robot, rows)
+def test_rows_deviations_and_margins_are_those_of_the_methods(
+    robot: Robot, rows: int, options: dict[str, float]
+) -> None:
+    plan = untimed(robot, rows, **options)
     claimed, branches = cut_ins(plan)
     problem = plan.problem
-    tool, options = problem.mounted_tool, problem.options
+    tool, asked = problem.mounted_tool, problem.options
     count = 39
     finer = finer_rows(problem, claimed.paths, branches, count)
     deviations, margins = as_executed(problem, claimed, branches)
     for k, path in enumerate(claimed.paths):
         branch = None if branches is None else int(branches[k])
-        known = retreat_rows(robot, tool, path[-1], branch, even_retreats(options, count))
+        known = retreat_rows(robot, tool, path[-1], branch, even_retreats(asked, count))
         assert finer[k] == pytest.approx(known, abs=1e-9)
         line = (claimed.places[k], claimed.axes[k, :, 2])
-        known, deviation = refined_rows(robot, tool, options, path, branch, line)
+        known, deviation = refined_rows(robot, tool, asked, path, branch, line)
         assert deviations[k] == pytest.approx(deviation, abs=1e-10)
         margin = robot.limit_margin(np.concatenate((path, known))).min()
         assert margins[k] == pytest.approx(margin, abs=1e-9)
