@@ -278,3 +278,27 @@ def test_claims_without_the_option_do_not_verify(plan: Plan) -> None:
         claim: dict[str, Any] = {field: 0.0}
         spoiled = replace(plan.approaches[0], **claim)
         assert not verify(plan.problem, spoiled, plan.problem.start).accepted
+
+
+def test_both_sides_of_a_symmetric_tool_are_planned(tabletop: Robot) -> None:
+    options = Options(method="ssas", order="independent", symmetric_tool=True)
+    plan = solve(Problem(tabletop, random_targets(55, 40), options))
+    done = [one for one in plan.approaches if one.status == "planned"]
+    assert {one.tool_side for one in done} == {1, -1}
+    for one in done:
+        assert verify(plan.problem, one, plan.problem.start).accepted
+
+
+def test_no_margin_at_all_is_a_level(tabletop: Robot) -> None:
+    """Told of a target that no approach lets move even by an eighth of what is wished for."""
+    options = Options(method="ssas", order="independent", position_margin_m=0.05)
+    plan = solve(Problem(tabletop, random_targets(55, 40), options))
+    bare = [one for one in plan.approaches if one.position_margin_m == 0.0]
+    assert bare
+    for one in bare:
+        assert one.margin_short is True
+        assert verify(plan.problem, one, plan.problem.start).accepted
+        for level in (1.0, -1.0):
+            other = replace(one, position_margin_m=level)
+            names = {row.name for row in verify(plan.problem, other, plan.problem.start).failures}
+            assert "position_margin_is_level" in names
