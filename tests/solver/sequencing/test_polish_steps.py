@@ -27,6 +27,9 @@ def model(seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Parabolas of thinning and of what comes before, (3, 6, N); nothing moves before the first."""
     rng = np.random.default_rng(seed)
     thinning, before = rng.uniform(-1.0, 1.0, (2, 3, 6, N))
+    # Postures bend little within the reach of a step.
+    thinning[2] *= 0.2
+    before[2] *= 0.2
     before[1:, :, 0] = 0.0
     return thinning, before
 
@@ -119,7 +122,7 @@ def test_the_model_s_minimum_is_one(squared: bool, seed: int) -> None:
     rng = np.random.default_rng(seed)
     for change in rng.normal(0.0, 1e-3, (300, N)) * rng.integers(0, 2, (300, N)):
         tried = np.clip(x + change, low, high)
-        assert plain(thinning, before, tried, squared=squared).sum() >= least - 3e-4
+        assert plain(thinning, before, tried, squared=squared).sum() >= least - 1e-6
 
 
 @pytest.mark.parametrize("squared", [False, True])
