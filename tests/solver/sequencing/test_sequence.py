@@ -68,6 +68,10 @@ def test_sequence_leaves_out_what_has_no_arc_and_repeats_itself(tabletop: Robot)
     mixed = (DATA_SET_3[0], far, *DATA_SET_3[1:])
     given = sequence(Problem(tabletop, mixed, options=Options(order="given")))
     assert [stop.task.target.id for stop in given] == ["1", "2", "3", "4", "5"]
+    for stop in given:
+        assert (stop.candidate.iterations, stop.candidate.status) == (0, "optimum_of_ladder")
+        assert (stop.candidate.tool_side, stop.candidate.branch) == (1, stop.arc.branch)
+        assert stop.arc.lower_rad <= stop.angle_rad <= stop.arc.upper_rad
     optimal = Problem(tabletop, mixed, options=Options(order="optimal"))
     found = sequence(optimal)
     assert found == sequence(optimal)
