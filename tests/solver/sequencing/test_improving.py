@@ -22,7 +22,10 @@ def stops(tabletop: Robot) -> tuple[Stop, ...]:
 
 def offers(stop: Stop, count: int) -> tuple[Candidate, ...]:
     """Candidates that only their numbers tell apart."""
-    return tuple(replace(stop.candidate, iterations=10 + k, status=f"{k}") for k in range(count))
+    return tuple(
+        replace(stop.candidate, effort=float(k), iterations=10 + k, status=f"{k}")
+        for k in range(count)
+    )
 
 
 @pytest.mark.parametrize("broken", [0, 1, 2])
@@ -45,6 +48,7 @@ def test_the_first_offer_that_holds_is_taken(
     found = improved_stop(stops[0].task, stops[0], stops[1], improve)
     # Its own work and status are those of the method's answer, whichever offer it is.
     assert (found.iterations, found.status) == (10, "0")
+    assert found.effort == broken
     assert [one.iterations for one in found.others] == list(range(11 + broken, 14))
     ((task, start, next_thinning),) = asked
     assert task is stops[0].task

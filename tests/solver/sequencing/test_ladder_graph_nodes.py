@@ -8,6 +8,7 @@ import pytest
 from solver.problem.options import Norm
 from solver.sequencing.batch import arc_postures
 from solver.sequencing.ladder_graph import (
+    _carried,
     even_nodes,
     halved,
     kept_nodes,
@@ -64,6 +65,23 @@ def test_what_is_kept_gets_its_halves_beside_it() -> None:
     assert places.tolist() == [0, 1, 2, 3, 1, 2, 3, 3, 4]
     assert pieces.tolist() == [4] * 9
     assert origins.tolist() == [0, -1, 1, -1, -1, 4, -1, -1, 6]
+
+
+def test_postures_that_are_known_are_carried_on() -> None:
+    of = batch(count=1)
+    arcs, angles = np.array([0, 0, 1, 1]), of.arc_lower[[0, 0, 1, 1]] + np.array([0, 0.02, 0, 0.03])
+    expected, ends = np.empty((6, 4)), np.empty((6, 4))
+    arc_postures(of, arcs, angles, expected, ends)
+    known = np.array([2, 0])
+    thinning, standby = _carried(
+        of, arcs, angles, np.array([1, -1, 0, -1]), expected[:, known], ends[:, known]
+    )
+    assert thinning == pytest.approx(expected)
+    assert standby == pytest.approx(ends)
+    # Copied, and not computed again.
+    thinning, _ = _carried(of, arcs, angles, np.array([1, -1, 0, -1]), 0 * expected, 0 * ends)
+    assert np.all(thinning[:, [0, 2]] == 0.0)
+    assert thinning[:, [1, 3]] == pytest.approx(expected[:, [1, 3]])
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])

@@ -141,6 +141,19 @@ def test_a_newton_step_gains_and_keeps_within_its_bounds(squared: bool) -> None:
     assert efforts == sorted(efforts, reverse=True)
     assert efforts[-1] < efforts[0] - 1e-3
     assert len(efforts) < 20
+    # It stands for r / sqrt(r^2 + mu^2), which away from zero is nearly a sign.
+    assert squared or np.median(np.abs(dual)) > 0.5
+
+
+def test_where_nothing_bends_one_step_of_squares_is_the_whole_way() -> None:
+    thinning, before = model(7)
+    thinning[2], before[2] = 0.0, 0.0
+    x, free = np.zeros(N), np.full(N, np.inf)
+    assert _newton_step(thinning, before, x, np.zeros((6, N)), -free, free, True, 0.0)
+    least = plain(thinning, before, x, squared=True).sum()
+    rng = np.random.default_rng(8)
+    for change in rng.normal(0.0, 1e-3, (100, N)):
+        assert plain(thinning, before, x + change, squared=True).sum() >= least - 1e-9
 
 
 def test_reach_follows_the_errors_of_the_parabolas() -> None:
