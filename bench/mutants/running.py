@@ -1,11 +1,12 @@
 """Mutants run: in memory, two at a time. No file of the project is written."""
 
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Final
@@ -23,8 +24,10 @@ PATIENCE_S: Final = 15.0
 """A mutant whose tests take so much longer than they do, and so long to start, is endless."""
 
 _ALL_PASSED: Final = 0
-_NOTICED: Final = (1, 2)
-"""Pytest's codes of what a mutant comes to: a test fails, or its file cannot even be read."""
+_NO_SUCH_TEST: Final = 4
+_NO_TEST: Final = 5
+"""Pytest's codes. Every other one is what a mutant comes to: a test fails, its file cannot even be
+read, or all of it breaks down."""
 
 
 def run(mutants: Sequence[Mutant], kept: Path) -> Iterator[Outcome]:
@@ -57,33 +60,46 @@ def _outcome(
 
 
 def _verdict(mutant: Mutant, tests: dict[str, float], *, interpreted: bool) -> str:
+    patience_s = PATIENCE * sum(tests.values()) + PATIENCE_S
     with tempfile.TemporaryDirectory(prefix="prunus-mutant-") as folder:
-        text, names = Path(folder, "text.py"), Path(folder, "tests.txt")
+        text = Path(folder, "text.py")
         text.write_text(mutant.text(), encoding="utf-8")
-        names.write_text("\n".join(tests))
         own = {
             "MUTANT_SOURCE": str(mutant.source),
             "MUTANT_TEXT": str(text),
             "PYTHONPATH": os.pathsep.join((str(SITE), str(REPOSITORY))),
         }
-        process = subprocess.Popen(
-            [sys.executable, "-m", "pytest", "-x", f"@{names}"],
-            cwd=REPOSITORY,
-            env={**environment(interpreted=interpreted), **own},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            start_new_session=True,
-        )
-        try:
-            told, _ = process.communicate(timeout=PATIENCE * sum(tests.values()) + PATIENCE_S)
-        except subprocess.TimeoutExpired:
-            # Whatever its tests have started goes too.
-            os.killpg(process.pid, 9)
-            process.communicate()
-            return ENDLESS
-    if process.returncode == _ALL_PASSED:
-        return SURVIVED
-    if process.returncode not in _NOTICED:
-        raise RuntimeError(f"pytest ended with {process.returncode}: {told[-2000:]}")
-    return NOTICED
+        given = {**environment(interpreted=interpreted), **own}
+        code = _pytest(tests, Path(folder), given, patience_s)
+        if code == _NO_SUCH_TEST:
+            # Cases are named after values, which a mutant may change: then all of their functions.
+            functions = dict.fromkeys(name.partition("[")[0] for name in tests)
+            code = _pytest(functions, Path(folder), given, patience_s)
+    if code is None:
+        return ENDLESS
+    if code in (_NO_SUCH_TEST, _NO_TEST):
+        raise RuntimeError(f"no test of {sorted(tests)} is there any more")
+    return SURVIVED if code == _ALL_PASSED else NOTICED
+
+
+def _pytest(
+    names: Iterable[str], folder: Path, given: dict[str, str], patience_s: float
+) -> int | None:
+    """What it ends with; None where that takes too long."""
+    listed = folder / "tests.txt"
+    listed.write_text("\n".join(names))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "pytest", "-x", f"@{listed}"],
+        cwd=REPOSITORY,
+        env=given,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        return process.wait(patience_s)
+    except subprocess.TimeoutExpired:
+        # Whatever its tests have started goes too.
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        return None

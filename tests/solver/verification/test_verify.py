@@ -1,6 +1,7 @@
 """Every planned answer passes; an answer spoiled anywhere does not."""
 
 import ast
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -22,12 +23,13 @@ from solver import (
     verify,
     verify_plan,
 )
+from solver.approach.task.frame import approach_frame
 from solver.approach.tolerances import UNCERTAINTY_DEVIATIONS
 from solver.approach.uncertainty.robustness import path_displacement_margin
 from solver.methods.registry import METHODS
 from solver.problem.options import MethodName, Order
 from solver.verification.verify import judge
-from tests.solver.problems import data_set_3, random_targets, targets_for
+from tests.solver.problems import DATA_SET_3, data_set_3, random_targets, targets_for
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -302,3 +304,25 @@ def test_no_margin_at_all_is_a_level(tabletop: Robot) -> None:
             other = replace(one, position_margin_m=level)
             names = {row.name for row in verify(plan.problem, other, plan.problem.start).failures}
             assert "position_margin_is_level" in names
+
+
+@pytest.mark.parametrize(("along_m", "accepted"), [(-0.004, True), (0.005, False), (0.025, False)])
+def test_the_strike_zone_is_between_the_forks_and_not_before_them(
+    tabletop: Robot, along_m: float, accepted: bool
+) -> None:
+    """The target moved along the approach: between the forks, or ahead of what they reach."""
+    options = Options(order="independent", strike_zone_m=0.02)
+    target = DATA_SET_3[0]
+    (found,) = solve(Problem(tabletop, [target], options)).approaches
+    frame = approach_frame(target.position_m, target.branch_direction)
+    ahead = frame.direction(found.approach_angle_rad or 0.0)
+    place = np.asarray(target.position_m) + (along_m + (found.strike_m or 0.0)) * ahead
+    # Straight on along the approach direction, which is normal to the branch: the angle is counted
+    # from another direction there.
+    moved = replace(target, position_m=tuple(place.tolist()))
+    turned = approach_frame(moved.position_m, moved.branch_direction)
+    angle = math.atan2(ahead @ turned.sideways, ahead @ turned.outward)
+    claim = replace(found, approach_angle_rad=angle, strike_m=-along_m)
+    problem = Problem(tabletop, [moved], options)
+    names = {row.name for row in verify(problem, claim, problem.start).failures}
+    assert names == (set() if accepted else {"path_position_m"})
