@@ -1,5 +1,6 @@
 """Mutants run: in memory, two at a time. No file of the project is written."""
 
+import math
 import os
 import signal
 import subprocess
@@ -25,7 +26,6 @@ PATIENCE_S: Final = 15.0
 
 _ALL_PASSED: Final = 0
 _NO_SUCH_TEST: Final = 4
-_NO_TEST: Final = 5
 """Pytest's codes. Every other one is what a mutant comes to: a test fails, its file cannot even be
 read, or all of it breaks down."""
 
@@ -75,10 +75,13 @@ def _verdict(mutant: Mutant, tests: dict[str, float], *, interpreted: bool) -> s
             # Cases are named after values, which a mutant may change: then all of their functions.
             functions = dict.fromkeys(name.partition("[")[0] for name in tests)
             code = _pytest(functions, Path(folder), given, patience_s)
+        if code == _NO_SUCH_TEST:
+            # Their file cannot be read, which is the mutant's doing if without it they pass.
+            unchanged = environment(interpreted=interpreted)
+            if _pytest(functions, Path(folder), unchanged, math.inf) != _ALL_PASSED:
+                raise RuntimeError(f"{sorted(functions)} fail without a mutant")
     if code is None:
         return ENDLESS
-    if code in (_NO_SUCH_TEST, _NO_TEST):
-        raise RuntimeError(f"no test of {sorted(tests)} is there any more")
     return SURVIVED if code == _ALL_PASSED else NOTICED
 
 
@@ -97,7 +100,7 @@ def _pytest(
         start_new_session=True,
     )
     try:
-        return process.wait(patience_s)
+        return process.wait(None if math.isinf(patience_s) else patience_s)
     except subprocess.TimeoutExpired:
         # Whatever its tests have started goes too.
         os.killpg(process.pid, signal.SIGKILL)
