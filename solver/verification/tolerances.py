@@ -25,7 +25,7 @@ ROW_ERROR: Final = 1e-12
 """Error of a finer row above which it is improved [m and rad]: four digits above rounding, and the
 next step squares it."""
 
-ROW_ROUNDS: Final = 30
+ROW_ROUNDS: Final = 12
 """Steps of Newton's method that a finer row may take; from between rows that are sent four do."""
 
 ROW_LARGEST_STEP: Final = 0.3
