@@ -53,7 +53,6 @@ def cut_ins(plan: Plan) -> tuple[ClaimedPaths, np.ndarray | None]:
     ("rows", "options"),
     [
         (2, {}),
-        (20, {}),
         # Halved several times until it is straight, and from ends that are far apart.
         (20, {"straightness_m": 1e-6}),
         (2, {"standoff_m": 0.15}),
