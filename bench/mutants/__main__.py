@@ -23,6 +23,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--again", action="store_true", help="try once more those that lived")
     given = parser.parse_args()
+    if empty := [room for room in given.rooms if not sources_of(room)]:
+        parser.error(f"no sources in {', '.join(empty)}")
     results = [_room(room, given.count, given.seed, again=given.again) for room in given.rooms]
     return 0 if all(results) else 1
 

@@ -40,6 +40,13 @@ class RigidTransform:
     position_m: tuple[float, float, float]
     quaternion_xyzw: tuple[float, float, float, float]
 
+    def to_dict(self) -> dict[str, list[float]]:
+        """As plain values, with the wire's names."""
+        return {
+            "position_m": list(self.position_m),
+            "quaternion_xyzw": list(self.quaternion_xyzw),
+        }
+
     @property
     def rotation(self) -> Array:
         """The rotation as a matrix, shape (3, 3); its columns are the frame's axes."""

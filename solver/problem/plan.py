@@ -42,14 +42,7 @@ class Plan:
         problem, include = self.problem, frozenset(self.problem.options.include or ())
         sent_in = {}
         if (frame := problem.frame) is not None:
-            pose = frame.base_from_frame
-            sent_in = {
-                "frame": frame.name,
-                "frame_transform": {
-                    "position_m": list(pose.position_m),
-                    "quaternion_xyzw": list(pose.quaternion_xyzw),
-                },
-            }
+            sent_in = {"frame": frame.name, "frame_transform": frame.base_from_frame.to_dict()}
         return {
             "robot": problem.robot.name,
             "tool": problem.mounted_tool.name,

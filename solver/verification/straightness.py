@@ -45,9 +45,9 @@ def as_executed(
         rows = claimed.paths[bent]
         if count > options.path_points:
             rows = finer_rows(problem, rows, None if branches is None else branches[bent], count)
+            margins[bent] = np.minimum(margins[bent], limit_margins(problem.robot, rows))
         lines = claimed.places[bent], claimed.axes[bent, :, 2]
         deviations[bent] = line_distances(problem, rows, *lines)
-        margins[bent] = np.minimum(margins[bent], limit_margins(problem.robot, rows))
         count = 2 * count - 1
     return deviations, margins
 

@@ -56,13 +56,5 @@ def stored_request(request: PlanRequest, problem: Problem) -> str:
         {**sent, "position_m": list(own.position_m), "branch_direction": list(own.branch_direction)}
         for sent, own in zip(kept["targets"], problem.targets, strict=True)
     ]
-    kept["frame_transform"] = pose_to_wire(problem.frame.base_from_frame)
+    kept["frame_transform"] = problem.frame.base_from_frame.to_dict()
     return orjson.dumps(kept).decode()
-
-
-def pose_to_wire(transform: RigidTransform) -> dict[str, list[float]]:
-    """A frame's pose as JSON values."""
-    return {
-        "position_m": list(transform.position_m),
-        "quaternion_xyzw": list(transform.quaternion_xyzw),
-    }
