@@ -24,3 +24,8 @@ UNCERTAINTY_DEVIATIONS: Final = 3.0
 """Factor on the standard deviation: how far a target may be from where it was seen. The nearest
 limit is all but flat at that scale: 99.87 % of normally distributed targets are on its feasible
 side, and 97 % in the whole ball."""
+
+TURN_CHANGE_SHARE: Final = 0.5
+"""Share of what a joint's turn changes from one cell to the next by which it may leave the range
+between the cell's ends. A parabola rises above its chord by an eighth of it; a square root, as at
+the edge of reach, leaves its range by 0.43 at most."""

@@ -160,8 +160,9 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
         right_margins: the same at the upper end.
 
     Returns:
-        The state, and for EXTREME the constraint and row that may have an extremum, or -1 where a
-        joint swings or may jump. EDGE where the arm enters its reach: joints have a cusp there.
+        The state, and for EXTREME the constraint and row (-1: the whole cut-in) that may have an
+        extremum, or -1 where a joint swings or may jump. EDGE where the arm enters its reach:
+        joints have a cusp there.
     """
     rows = len(task.retreats)
     for i in range(JUMP):
@@ -228,5 +229,5 @@ def path_state(task, wrist, width, outer, left, right, beyond, left_margins, rig
         if width > NARROW_JUMP_RAD and valley < 2.0 * (1.0 - least_cosine):
             return CellState.EXTREME, -1, 0
         if valley < 0.0:
-            extreme, at_row = JUMP, 0
+            extreme, at_row = JUMP, -1
     return (CellState.EXTREME, extreme, at_row) if extreme >= 0 else (state, -1, 0)

@@ -3,7 +3,7 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from solver.approach.arcs.turns import (
 from solver.approach.task.constraints import JUMP, REACH
 from solver.approach.task.packed import unpack_geometry
 from solver.approach.tolerances import ARC_CELLS
-from solver.compiled import kernel
+from solver.compiled import NONE_YET, kernel
 from solver.robots.model import Array
 
 ARMS = 4
@@ -37,6 +37,9 @@ ARMS = 4
 
 CELL_SLOTS = 8
 """Cut-ins that are kept while a cell is split: a cell takes four, of which its halves use three."""
+
+WHOLE_CUT_IN = cast(int, np.int64(-1))
+"""In place of a row: all of them, and what is between them."""
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
@@ -62,6 +65,7 @@ class ArcScratch(NamedTuple):
     work: Array
     work_margins: Array
     single_path: Array
+    reference: Array
 
 
 @kernel
@@ -86,18 +90,25 @@ def arc_scratch(rows):
         np.empty((TURN_ROWS, path_columns(rows))),
         np.empty(CONSTRAINTS),
         np.empty((TURN_ROWS, path_columns(rows))),
+        np.empty((6, 2)),
     )
 
 
 @kernel
 def single_margin(task, scratch, angle, row, arm, wrist, i):
-    """One constraint's margin at one angle in one row of the cut-in; the jump is the path's."""
-    if i == JUMP:
+    """One constraint's margin at one angle in one row of the cut-in.
+
+    The jump's is the room of the rates in that row, or in WHOLE_CUT_IN that of all of them and
+    between them.
+    """
+    if i == JUMP and row < 0:
         turns_along_path(task, angle, arm, scratch.single_path)
         return jump_margin(task, scratch.single_path, wrist)
     turns = scratch.single
     turns[0, 0], turns[1, 0], turns[2, 0] = math.cos(angle), math.sin(angle), task.retreats[row]
     write_turns(task, 1, arm, turns)
+    if i == JUMP:
+        return row_room(unpack_geometry(task.numbers), turns, 0)
     return row_margin(task, turns, 0, wrist, i)
 
 
@@ -158,9 +169,23 @@ def root(task, scratch, arm, wrist, i, row, broken, f_broken, met, f_met):
 
 
 @kernel
+def fastest_row(task, turns):
+    """The row of the cut-in where joints have the least room below the highest rate, and that."""
+    g, fastest, least = unpack_geometry(task.numbers), NONE_YET, math.inf
+    for n in range(len(task.retreats)):
+        room = row_room(g, turns, n)
+        if room < least:
+            fastest, least = n, room
+    return fastest, least
+
+
+@kernel
 def worst_constraint(task, turns, wrist, first, last, margins):
-    """The constraint with the smallest margin below zero, its row and its margin; -1 if none is."""
-    worst, row, least = -1, 0, 0.0
+    """The constraint with the smallest margin below zero, its row and its margin; -1 if none is.
+
+    The row is WHOLE_CUT_IN where joints are too fast between rows.
+    """
+    worst, row, least = -1, NONE_YET, 0.0
     for i in range(first, last):
         if margins[i] < least:
             worst, least = i, margins[i]
@@ -170,17 +195,17 @@ def worst_constraint(task, turns, wrist, first, last, margins):
             value = row_margin(task, turns, n, wrist, worst)
             if value < least:
                 row, least = n, value
+    if worst == JUMP:
+        row, room = fastest_row(task, turns)
+        row = row if room <= least else WHOLE_CUT_IN
     return worst, row, least
 
 
 @kernel
 def stretched(task, turns):
     """Whether the elbow is all but stretched or folded in the row where joints turn fastest."""
-    g, fastest, least = unpack_geometry(task.numbers), 0, math.inf
-    for n in range(len(task.retreats)):
-        room = row_room(g, turns, n)
-        if room < least:
-            fastest, least = n, room
+    g = unpack_geometry(task.numbers)
+    fastest, _ = fastest_row(task, turns)
     cos3, sin3 = turns[4, fastest], turns[5, fastest]
     return abs(sin3 * g.cos_beta + cos3 * g.sin_beta) < STRETCHED_SINE
 
@@ -212,6 +237,8 @@ def pull_in(
             return end, worst, True
         if at_this >= 0.0:
             return end, worst, False
+        if worst == JUMP and row >= 0:
+            at_other = row_room(unpack_geometry(task.numbers), at_end, row)
         found = root(task, scratch, arm, wrist, worst, row, angle, least, end, at_other)
         angle, by = found if found != angle else angle + inwards * ARC_END_RAD, worst
         if (end - angle) * inwards <= 0.0:

@@ -55,7 +55,10 @@ def find_arcs(task, scratch, arcs):
             start = count
             for k in range(ARC_CELLS):
                 if scratch.open_cells[arm, wrist, k]:
-                    count = cell_pieces(task, scratch, arm, wrist, k, arcs, start, count)
+                    state = cell_state(task, scratch, arm, wrist, k)
+                    count = cell_pieces(
+                        task, scratch, arm, wrist, k, state, arcs, start, count, math.inf
+                    )
             count = close_turn(arcs, start, count)
     return count
 
@@ -104,8 +107,8 @@ def know_margins(task, wrist, k, paths, margins, known):
 
 
 @kernel
-def cell_pieces(task, scratch, arm, wrist, k, arcs, start, count):
-    """Appends the feasible pieces of an open cell of one branch; returns the new count."""
+def cell_state(task, scratch, arm, wrist, k):
+    """State of an open cell of one branch, from every constraint in every row."""
     paths, known_paths = scratch.paths[arm], scratch.known_paths[arm]
     margins, known_margins = scratch.margins[arm, wrist], scratch.known_margins[arm, wrist]
     outer, after, beyond = (k - 1) % ARC_CELLS, (k + 1) % ARC_CELLS, (k + 2) % ARC_CELLS
@@ -113,28 +116,52 @@ def cell_pieces(task, scratch, arm, wrist, k, arcs, start, count):
         know_path(task, arm, node, paths, known_paths)
     for node in (k, after):
         know_margins(task, wrist, node, paths, margins, known_margins)
-    at_left, at_right, left, right = paths[k], paths[after], margins[k], margins[after]
     state, _, _ = path_state(
-        task, wrist, _STEP, paths[outer], at_left, at_right, paths[beyond], left, right
-    )
+        task, wrist, _STEP, paths[outer], paths[k], paths[after], paths[beyond],
+        margins[k], margins[after],
+    )  # fmt: skip
+    return state
+
+
+@kernel
+def cell_pieces(task, scratch, arm, wrist, k, state, arcs, start, count, best):
+    """Appends the feasible pieces of a cell of one branch, of that state; returns the new count.
+
+    Parts of a cell in which effort is certainly not below `best` may be left out; with infinity
+    none is, and no reference need be known.
+    """
     low, high = _ANGLES[k], _ANGLES[k + 1]
     if state == CellState.DEAD:
         return count
     if state == CellState.FULL:
         return append_arc(arcs, start, count, arm, wrist, low, high, JUMP_IN_CUT_IN, JUMP_IN_CUT_IN)
     if state in (CellState.EDGE, CellState.CROSSED):
+        after = (k + 1) % ARC_CELLS
+        paths, margins = scratch.paths[arm], scratch.margins[arm, wrist]
         first, end = (REACH, JUMP) if state == CellState.EDGE else (0, CONSTRAINTS)
         clean, a, b, by_a, by_b = tighten(
-            task, scratch, arm, wrist, first, end, low, high, at_left, at_right, left, right
-        )
+            task, scratch, arm, wrist, first, end, low, high,
+            paths[k], paths[after], margins[k], margins[after],
+        )  # fmt: skip
         if clean and a >= b:
             return count
         if clean and state == CellState.CROSSED:
             return append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
         if clean:
-            return settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count)
+            return settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count, best)
     return settle(
-        task, scratch, arm, wrist, low, high, JUMP_IN_CUT_IN, JUMP_IN_CUT_IN, arcs, start, count
+        task,
+        scratch,
+        arm,
+        wrist,
+        low,
+        high,
+        JUMP_IN_CUT_IN,
+        JUMP_IN_CUT_IN,
+        arcs,
+        start,
+        count,
+        best,
     )
 
 

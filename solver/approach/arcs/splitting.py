@@ -7,7 +7,15 @@ import math
 import numpy as np
 
 from solver.approach.arcs.cells import CellState, path_state
-from solver.approach.arcs.roots import CELL_SLOTS, extreme_margin, root, single_margin, tighten
+from solver.approach.arcs.effort_bound import effort_at_least
+from solver.approach.arcs.roots import (
+    CELL_SLOTS,
+    WHOLE_CUT_IN,
+    extreme_margin,
+    root,
+    single_margin,
+    tighten,
+)
 from solver.approach.arcs.tolerances import (
     CELL_STACK,
     EXTREME_ANGLE_RAD,
@@ -49,7 +57,7 @@ def append_sliver(task, scratch, arm, wrist, low, high, arcs, start, count):
     Returns the new count.
     """
     where, room = extreme_margin(
-        task, scratch, arm, wrist, JUMP_IN_CUT_IN, NONE_YET, low, high, 1.0, NARROWEST_ARC_RAD
+        task, scratch, arm, wrist, JUMP_IN_CUT_IN, WHOLE_CUT_IN, low, high, 1.0, NARROWEST_ARC_RAD
     )
     if room < 0.0:
         return count
@@ -60,11 +68,11 @@ def append_sliver(task, scratch, arm, wrist, low, high, arcs, start, count):
     ends = (low, high)
     first, last = where, where
     for side in range(2):
-        beyond = single_margin(task, scratch, ends[side], NONE_YET, arm, wrist, JUMP_IN_CUT_IN)
+        beyond = single_margin(task, scratch, ends[side], WHOLE_CUT_IN, arm, wrist, JUMP_IN_CUT_IN)
         end = ends[side]
         if beyond < 0.0:
             end = root(
-                task, scratch, arm, wrist, JUMP_IN_CUT_IN, NONE_YET, end, beyond, where, room
+                task, scratch, arm, wrist, JUMP_IN_CUT_IN, WHOLE_CUT_IN, end, beyond, where, room
             )
         if side == 0:
             first = end
@@ -107,14 +115,19 @@ def know_cell(task, scratch, arm, angle, apart):
 
 
 @kernel
-def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count):
-    """Appends the feasible pieces of a cell that has to be split; returns the new count."""
+def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, count, best):
+    """Appends the feasible pieces of a cell that has to be split; returns the new count.
+
+    Parts in which effort is certainly not below `best` are left out.
+    """
     stack = np.empty((CELL_STACK, 4))
     top = NONE_YET
     push(stack, top, low, high, by_low, by_high)
     top += 1
     paths, margins, ages = scratch.cell_paths, scratch.cell_margins, scratch.cell_ages
     forget_cells(scratch)
+    # The thinning posture's column.
+    last = paths.shape[2] - 1
     while top > 0:
         top -= 1
         a, b, by_a, by_b = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
@@ -125,6 +138,13 @@ def settle(task, scratch, arm, wrist, low, high, by_low, by_high, arcs, start, c
         left, right = know_cell(task, scratch, arm, a, 0.0), know_cell(task, scratch, arm, b, 0.0)
         outer = know_cell(task, scratch, arm, a - width, SAME_ANGLE_RAD)
         beyond = know_cell(task, scratch, arm, b + width, SAME_ANGLE_RAD)
+        if best < math.inf:
+            least = effort_at_least(
+                task, scratch.reference, wrist, paths[outer], last, paths[left], last,
+                paths[right], last, paths[beyond], last,
+            )  # fmt: skip
+            if least >= best:
+                continue
         for slot in (left, right):
             if not scratch.cell_known_margins[slot]:
                 path_margins(task, paths[slot], wrist, margins[slot])

@@ -9,7 +9,7 @@ those pieces in which effort may be lower are asked what they bear.
 
 import math
 
-from solver.approach.arcs.search import cell_pieces, open_up
+from solver.approach.arcs.search import cell_pieces, cell_state, open_up
 from solver.approach.optimum.cheapest import (
     at_cusp,
     cheapest_scratch,
@@ -37,15 +37,15 @@ def cheapest_at_level(task, scratch, work, needed, best):
     cells, bounds, pieces = scratch.cells, scratch.bounds, scratch.pieces
     g = unpack_geometry(task.numbers)
     open_up(task, arcs)
-    waiting = list_open_cells(
-        task, arcs.open_cells, arcs.thinning, scratch.reference, cells, bounds
-    )
+    waiting = list_open_cells(task, arcs, cells, bounds)
     angle, branch = math.nan, -1
     while take_cheapest(cells, bounds, waiting, best):
         waiting -= 1
         arm, wrist, k = cells[waiting]
         own = 2 * arm + wrist
-        for n in range(cell_pieces(task, arcs, arm, wrist, k, pieces, NONE_YET, NONE_YET)):
+        state = cell_state(task, arcs, arm, wrist, k)
+        found = cell_pieces(task, arcs, arm, wrist, k, state, pieces, NONE_YET, NONE_YET, best)
+        for n in range(found):
             low, high = pieces[n, 1], pieces[n, 2]
             low_cusp, high_cusp = at_cusp(pieces[n, 3]), at_cusp(pieces[n, 4])
             where, cost, _ = least_effort(

@@ -32,7 +32,7 @@ from solver.approach.optimum.tolerances import (
     SMOOTH_MINIMUM_RAD,
 )
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, PackedTask
-from solver.approach.tolerances import ANGLE_STEP_RAD, LEAST_EFFORT_CELLS
+from solver.approach.tolerances import ANGLE_STEP_RAD, LEAST_EFFORT_CELLS, TURN_CHANGE_SHARE
 from solver.compiled import YES, kernel
 from solver.problem.effort import joint_cost
 
@@ -43,7 +43,8 @@ _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
 def least_in_cell(task, joints, k, count):
     """What effort is at least between samples k and k + 1 of an arc's `count`.
 
-    A joint may leave the range between its two samples by half of what it turns next to it.
+    A joint leaves the range between its two samples by a TURN_CHANGE_SHARE of what its turn changes
+    from cell to cell.
     """
     total = 0.0
     for i in range(6):
@@ -51,12 +52,13 @@ def least_in_cell(task, joints, k, count):
             joints[i, k] - task.numbers[REFERENCE + i],
             joints[i, k + 1] - task.numbers[REFERENCE + i],
         )
-        beside = abs(b - a)
+        change = 0.0
         if k > 0:
-            beside = max(beside, abs(joints[i, k] - joints[i, k - 1]))
+            change = abs(b - a - (joints[i, k] - joints[i, k - 1]))
         if k + 2 < count:
-            beside = max(beside, abs(joints[i, k + 2] - joints[i, k + 1]))
-        least = 0.0 if (a < 0.0) != (b < 0.0) else max(min(abs(a), abs(b)) - beside / 2, 0.0)
+            change = max(change, abs(joints[i, k + 2] - joints[i, k + 1] - (b - a)))
+        slack = TURN_CHANGE_SHARE * change
+        least = 0.0 if (a < 0.0) != (b < 0.0) else max(min(abs(a), abs(b)) - slack, 0.0)
         total += task.numbers[WEIGHTS + i] * joint_cost(least, task.numbers[SQUARED] > 0.0)
     return total
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from solver.approach.arcs.roots import arc_scratch
-from solver.approach.arcs.search import cell_pieces
+from solver.approach.arcs.search import cell_pieces, cell_state
 from solver.approach.arcs.splitting import ARC_COLUMNS, MOST_ARCS
 from solver.approach.cut_in.between_rows import may_fall_below_zero_between, may_leave_between
 from solver.approach.refusal.displacement_constraints import copy_at
@@ -28,7 +28,9 @@ def on_an_arc(packed, branch, angle):
     scratch.known_paths[:] = False
     scratch.known_margins[:] = False
     k = int((angle + math.pi) / (2 * math.pi) * ARC_CELLS) % ARC_CELLS
-    pieces = cell_pieces(packed, scratch, branch // 2, branch % 2, k, arcs, NONE_YET, NONE_YET)
+    arm, wrist = branch // 2, branch % 2
+    state = cell_state(packed, scratch, arm, wrist, k)
+    pieces = cell_pieces(packed, scratch, arm, wrist, k, state, arcs, NONE_YET, NONE_YET, math.inf)
     found = False
     for i in range(pieces):
         found = found or arcs[i, 1] <= angle <= arcs[i, 2]
