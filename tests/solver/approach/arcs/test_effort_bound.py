@@ -10,6 +10,7 @@ from solver.approach.arcs.effort_bound import effort_at_least, write_reference
 from solver.approach.arcs.turns import TURN_ROWS, joints_of_turns, turns_at_angles
 from solver.approach.task.packed import PackedTask, jump_cosines
 from solver.approach.task.packing import packed_targets
+from solver.problem.options import Norm
 from solver.problem.retreats import looked_at_retreats
 from solver.robots.files import load_robot
 from solver.tolerances import EFFORT_ERROR_RELATIVE
@@ -21,7 +22,7 @@ INSIDE = 40
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
 @pytest.mark.parametrize("width", [math.radians(5.0), math.radians(1.0)])
-def test_no_effort_in_a_cell_is_below_its_bound(norm: str, width: float) -> None:
+def test_no_effort_in_a_cell_is_below_its_bound(norm: Norm, width: float) -> None:
     rng = np.random.default_rng(16)
     problem = Problem(load_robot("tabletop"), random_targets(3, 60), Options(norm=norm))
     positions = np.array([target.position_m for target in problem.targets])
