@@ -12,9 +12,9 @@ from solver.approach.optimum.batch import chosen_paths
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.frame import signed_angle
 from solver.approach.task.packing import packed_problem
-from solver.approach.task.task import ApproachTask, approach_task
+from solver.approach.task.task import ApproachTask, approach_tasks
 from solver.approach.uncertainty.levels import arcs_at_level
-from solver.problem.effort import posture_effort
+from solver.problem.effort import joint_costs
 from solver.problem.problem import Problem
 from solver.problem.retreats import looked_at_retreats
 from solver.problem.solution import Arc
@@ -75,7 +75,7 @@ def sequence(problem: Problem, arcs_of: ArcsOf = task_arcs) -> tuple[Stop, ...]:
         problem: with order "given" or "optimal".
         arcs_of: the feasible arcs of a task; one without length is a single approach.
     """
-    tasks = [approach_task(problem, target, problem.start) for target in problem.targets]
+    tasks = approach_tasks(problem, problem.targets, problem.start)
     numbers = packed_problem(problem)
     if arcs_of is task_arcs:
         found = arcs_of_packed(problem, numbers)
@@ -172,6 +172,8 @@ def _stops(
     paths = chosen_paths(problem, numbers, chosen, chain.angles)
     standby, thinning = paths.joints[:, 0], paths.joints[:, -1]
     before = np.concatenate(([problem.start], standby[:-1]))
+    costs = joint_costs(thinning - before, problem.options.norm)
+    efforts = np.sum(costs * np.asarray(problem.joint_weights), axis=1).tolist()
     stops = []
     for k, (task, arc) in enumerate(zip(tasks, chosen, strict=True)):
         candidate = Candidate(
@@ -179,9 +181,7 @@ def _stops(
             tool_side=arc.tool_side,
             branch=arc.branch,
             thinning_joints=tuple(thinning[k].tolist()),
-            effort=posture_effort(
-                thinning[k], before[k], problem.joint_weights, problem.options.norm
-            ),
+            effort=efforts[k],
             iterations=0,
             status="optimum_of_ladder",
         )

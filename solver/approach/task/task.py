@@ -158,12 +158,24 @@ class ApproachTask:
 
 def approach_task(problem: Problem, target: Target, reference: Sequence[float]) -> ApproachTask:
     """The task of one target of a problem, seen from a reference posture [rad]."""
-    return ApproachTask(
-        robot=problem.robot,
-        tool=problem.mounted_tool,
-        options=problem.options,
-        target=target,
-        reference=tuple(float(value) for value in reference),
-        joint_weights=problem.joint_weights,
-        retreats_m=tuple(looked_at_retreats(problem.options).tolist()),
-    )
+    return approach_tasks(problem, (target,), reference)[0]
+
+
+def approach_tasks(
+    problem: Problem, targets: Sequence[Target], reference: Sequence[float]
+) -> list[ApproachTask]:
+    """The tasks of some targets of a problem, all seen from a reference posture [rad]."""
+    seen_from = tuple(float(value) for value in reference)
+    retreats_m = tuple(looked_at_retreats(problem.options).tolist())
+    return [
+        ApproachTask(
+            robot=problem.robot,
+            tool=problem.mounted_tool,
+            options=problem.options,
+            target=target,
+            reference=seen_from,
+            joint_weights=problem.joint_weights,
+            retreats_m=retreats_m,
+        )
+        for target in targets
+    ]

@@ -17,6 +17,8 @@ from solver.problem.targets import Target
 def margin_levels(options: Options, target: Target) -> tuple[float, ...]:
     """Displacement margins to try, the largest first, the last one needed [m]."""
     needed, wished = needed_margin(target), options.position_margin_m or 0.0
+    if wished == 0.0:
+        return (needed,)
     parts = (*(wished / 2**k for k in range(MARGIN_HALVINGS + 1)), 0.0)
     return tuple(sorted({max(part, needed) for part in parts}, reverse=True))
 
