@@ -4,7 +4,7 @@ import hashlib
 import math
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields
 from functools import lru_cache
 from importlib import resources
@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from solver.exceptions import InvalidRobot, UnknownRobot
 from solver.robots.model import PRISMATIC, REVOLUTE, Joint, Link, Robot, Tool, check_robot
+from solver.robots.shapes import Box, Capsule, Fixture, Forks
 
 ROBOTS_VARIABLE: Final = "PRUNUS_ROBOTS_DIR"
 """Environment variable that names a folder of further model files."""
@@ -79,7 +80,9 @@ def parse_robot(document: bytes) -> Robot:
         roll = data.pop("flange_roll_rad", math.radians(data.pop("flange_roll_deg", 0.0)))
         robot = Robot(
             joints=tuple(_joint(entry) for entry in data.pop("joints")),
-            tools=tuple(Tool(**entry) for entry in data.pop("tools")),
+            tools=tuple(_tool(entry) for entry in data.pop("tools")),
+            fixtures=tuple(_fixture(entry) for entry in data.pop("fixtures", ())),
+            kept_apart=tuple(_two_names(pair) for pair in data.pop("kept_apart", ())),
             home_joints=_numbers(data.pop("home_joints")),
             version=hashlib.sha256(document).hexdigest()[:12],
             mount_position_m=_three(mount),
@@ -109,9 +112,44 @@ def _joint(entry: Mapping[str, Any]) -> Joint:
     missing = sorted(keys.get(field, field) for field in required - values.keys())
     if missing:
         raise KeyError(f"joint {entry.get('name')}: {', '.join(missing)}")
+    if "body" in values:
+        values["body"] = _capsules(values["body"])
     if "link" in values:
         values["link"] = _link(values["link"], kind)
     return Joint(**values)
+
+
+def _tool(entry: Mapping[str, Any]) -> Tool:
+    values = {**entry, "body": _capsules(entry.get("body", ()))}
+    if "forks" in values:
+        values["forks"] = Forks(**values["forks"])
+    return Tool(**values)
+
+
+def _fixture(entry: Mapping[str, Any]) -> Fixture:
+    values = {**entry, "capsules": _capsules(entry.get("capsules", ()))}
+    values["boxes"] = tuple(_box(box) for box in entry.get("boxes", ()))
+    return Fixture(**values)
+
+
+def _capsules(entries: Iterable[Mapping[str, Any]]) -> tuple[Capsule, ...]:
+    return tuple(
+        Capsule(**{**entry, "start_m": _three(entry["start_m"]), "end_m": _three(entry["end_m"])})
+        for entry in entries
+    )
+
+
+def _box(entry: Mapping[str, Any]) -> Box:
+    values = {**entry, "position_m": _three(entry["position_m"]), "size_m": _three(entry["size_m"])}
+    if "quaternion_xyzw" in values:
+        x, y, z, w = _numbers(values["quaternion_xyzw"])
+        values["quaternion_xyzw"] = (x, y, z, w)
+    return Box(**values)
+
+
+def _two_names(pair: Iterable[str]) -> tuple[str, str]:
+    one, other = pair
+    return one, other
 
 
 def _link(entry: Mapping[str, Any], kind: str) -> Link:

@@ -7,6 +7,7 @@ Joint vectors are radians for revolute and metres for prismatic joints.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -16,11 +17,15 @@ from numpy.typing import NDArray
 
 from solver.exceptions import InvalidRobot
 from solver.robots.rigid import transform
+from solver.robots.shapes import Box, Capsule, Fixture, Forks
 
 Array = NDArray[np.float64]
 
 REVOLUTE: Final = "revolute"
 PRISMATIC: Final = "prismatic"
+
+TOOL: Final = "tool"
+"""The tool's name among those of links in `Robot.kept_apart`, and where a collision is told."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,7 @@ class Joint:
         kind: "revolute" or "prismatic".
         servo: what drives it, if it is a servo.
         link: masses, if they are known or estimated.
+        body: shapes of the link, in the frame that moves with it.
     """
 
     name: str
@@ -66,6 +72,7 @@ class Joint:
     kind: str = REVOLUTE
     servo: str | None = None
     link: Link | None = None
+    body: tuple[Capsule, ...] = ()
 
     @property
     def unit(self) -> str:
@@ -78,12 +85,18 @@ class Tool:
     """An end-effector: it moves the tool centre point `length_m` along the last z axis.
 
     `mass_kg` counts half-way along that length.
+
+    Attributes:
+        body: its shapes but for the forks, in the tool's frame.
+        forks: the two rods that reach about a branch.
     """
 
     name: str
     length_m: float
     description: str
     mass_kg: float = 0.0
+    body: tuple[Capsule, ...] = ()
+    forks: Forks | None = None
 
 
 @dataclass(frozen=True)
@@ -98,6 +111,9 @@ class Robot:
         home_joints: the default start posture [rad or m].
         version: a digest of the model file: a plan made with another model is not this robot's.
         mass_source: where the masses are from, and whether they are estimates.
+        fixtures: what the arm stands on.
+        kept_apart: pairs of joints' links, fixtures and "tool" that may not meet, by name.
+        body_source: where the shapes are from, and whether they are estimates.
     """
 
     name: str
@@ -112,6 +128,9 @@ class Robot:
     mount_rpy_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
     flange_roll_rad: float = 0.0
     mass_source: str = ""
+    fixtures: tuple[Fixture, ...] = ()
+    kept_apart: tuple[tuple[str, str], ...] = ()
+    body_source: str = ""
 
     @cached_property
     def lower(self) -> Array:
@@ -147,6 +166,11 @@ class Robot:
     def joint_names(self) -> tuple[str, ...]:
         """Names in the order of every joint vector."""
         return tuple(joint.name for joint in self.joints)
+
+    @property
+    def has_body(self) -> bool:
+        """Whether the model says what space the arm takes up."""
+        return any(joint.body for joint in self.joints)
 
     @property
     def has_masses(self) -> bool:
@@ -199,6 +223,26 @@ def check_robot(robot: Robot) -> None:
             raise InvalidRobot(f"{robot.name}: tool {tool.name} has no usable length or mass")
     for joint, home in zip(robot.joints, robot.home_joints, strict=True):
         _check_joint(f"{robot.name}: ", joint, home)
+    _check_body(robot)
+
+
+def _check_body(robot: Robot) -> None:
+    fixtures = [fixture.name for fixture in robot.fixtures]
+    names = [*robot.joint_names, TOOL, *fixtures]
+    if len(set(names)) != len(names):
+        raise InvalidRobot(f"{robot.name}: two of joints, fixtures and {TOOL!r} have one name")
+    for pair in robot.kept_apart:
+        if len(set(pair)) != 2 or not set(pair) <= set(names) or set(pair) <= set(fixtures):
+            raise InvalidRobot(f"{robot.name}: kept_apart has {pair}, which are no two that move")
+    shapes: dict[str, Sequence[Capsule | Box | Forks]] = {
+        **{joint.name: joint.body for joint in robot.joints},
+        **{fixture.name: (*fixture.capsules, *fixture.boxes) for fixture in robot.fixtures},
+    }
+    for tool in robot.tools:
+        shapes[f"{TOOL} {tool.name}"] = (*tool.body, *([] if tool.forks is None else [tool.forks]))
+    for name, own in shapes.items():
+        if not all(shape.makes_sense for shape in own):
+            raise InvalidRobot(f"{robot.name}: {name} has a shape without a size")
 
 
 def _check_joint(prefix: str, joint: Joint, home: float) -> None:

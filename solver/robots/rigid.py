@@ -29,6 +29,18 @@ def link_transform(a_m: float, alpha_rad: float, d_m: float, theta_rad: float) -
     return np.asarray(turn @ transform((a_m, 0.0, 0.0), (alpha_rad, 0.0, 0.0)))
 
 
+def quaternion_matrix(xyzw: Sequence[float]) -> Array:
+    """The rotation of a quaternion of any length but zero, shape (3, 3)."""
+    x, y, z, w = np.array(xyzw, dtype=np.float64) / math.hypot(*xyzw)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
 def inverse(pose: Array) -> Array:
     """The inverse of a rigid transform, shape (4, 4)."""
     back = np.eye(4)

@@ -3,10 +3,11 @@
 import hashlib
 import json
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, replace
 
 from solver.robots.model import REVOLUTE, Joint, Robot
+from solver.robots.shapes import Capsule
 
 _BY_KIND = {
     "revolute": (
@@ -43,6 +44,17 @@ def _lines(robot: Robot) -> Iterator[str]:
         yield f"mount_rpy_rad = {_numbers(robot.mount_rpy_rad)}"
     if robot.flange_roll_rad:
         yield f"flange_roll_rad = {_number(robot.flange_roll_rad)}"
+    if robot.body_source:
+        yield f"body_source = {_text(robot.body_source)}"
+    if robot.kept_apart:
+        yield f"kept_apart = {json.dumps(robot.kept_apart)}"
+    for fixture in robot.fixtures:
+        yield from ("", "[[fixtures]]", f"name = {_text(fixture.name)}")
+        yield from _capsule_lines("fixtures.capsules", fixture.capsules)
+        for box in fixture.boxes:
+            yield from ("", "[[fixtures.boxes]]", f"position_m = {_numbers(box.position_m)}")
+            yield f"size_m = {_numbers(box.size_m)}"
+            yield f"quaternion_xyzw = {_numbers(box.quaternion_xyzw)}"
     for tool in robot.tools:
         yield from (
             "",
@@ -53,8 +65,19 @@ def _lines(robot: Robot) -> Iterator[str]:
         yield f"description = {_text(tool.description)}"
         if tool.mass_kg:
             yield f"mass_kg = {_number(tool.mass_kg)}"
+        yield from _capsule_lines("tools.body", tool.body)
+        if (forks := tool.forks) is not None:
+            yield from ("", "[tools.forks]")
+            yield from (f"{key} = {_number(value)}" for key, value in asdict(forks).items())
     for joint in robot.joints:
         yield from _joint_lines(joint)
+
+
+def _capsule_lines(table: str, capsules: Iterable[Capsule]) -> Iterator[str]:
+    for capsule in capsules:
+        yield from ("", f"[[{table}]]", f"start_m = {_numbers(capsule.start_m)}")
+        yield f"end_m = {_numbers(capsule.end_m)}"
+        yield f"radius_m = {_number(capsule.radius_m)}"
 
 
 def _joint_lines(joint: Joint) -> Iterator[str]:
@@ -77,6 +100,7 @@ def _joint_lines(joint: Joint) -> Iterator[str]:
         yield f"centre_m = {_numbers(joint.link.centre_m)}"
         yield f"inertia_kg_m2 = {_numbers(joint.link.inertia_kg_m2)}"
         yield f"{drive} = {_number(joint.link.drive_inertia)}"
+    yield from _capsule_lines("joints.body", joint.body)
 
 
 def _text(value: str) -> str:

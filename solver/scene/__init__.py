@@ -1,1 +1,1 @@
-"""What stands in the arm's way: obstacles, a file and a row each. None yet; scenes are refused."""
+"""What stands in the arm's way, the arm's own body, and how near they come to each other."""
