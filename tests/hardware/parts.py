@@ -36,15 +36,17 @@ DATA_SET_3 = (
 
 @dataclass
 class FakeTime:
-    """A wall clock that passes only when somebody sleeps."""
+    """A wall clock that passes only when somebody sleeps; the next sleep may last longer."""
 
     now_s: float = 1000.0
+    oversleep_s: float = 0.0
 
     def monotonic(self) -> float:
         return self.now_s
 
     def sleep(self, seconds: float) -> None:
-        self.now_s += seconds
+        self.now_s += seconds + self.oversleep_s
+        self.oversleep_s = 0.0
 
 
 @dataclass
