@@ -281,7 +281,6 @@ class Worker:
 
     def _finish(self, execution: Execution) -> None:
         self._execution = None
-        self._steps = iter(())
         try:
             self._journal.end(execution.account.execution_id, execution.account.status)
         except JournalFailed as error:
