@@ -12,6 +12,9 @@ from hardware.worker.order import Order
 from solver import Robot, Tool
 from tests.hardware.parts import Bench
 
+MOST_TICKS = 4000
+"""Of the longest order of the tests, twice."""
+
 
 @dataclass
 class RecordedEndEffector:
@@ -49,6 +52,7 @@ class Run:
 
     def tick(self) -> bool:
         """One period of the control loop; False when the order is done."""
+        assert len(self.segments) < MOST_TICKS, "it never ends"
         try:
             next(self.steps)
         except StopIteration:

@@ -26,6 +26,8 @@ from tests.hardware.parts import Bench, make_bench, messages_of, plan_of_data_se
 from tests.hardware.worker.short_orders import short_messages
 
 LONGEST_RUN_S = 60.0
+MOST_LOOKS = 10_000
+"""Ticks of the longest scene, twice and more."""
 
 
 Event = FromService | str | Callable[[], object]
@@ -44,6 +46,7 @@ class ScriptedLink:
     said_at: list[float] = field(default_factory=list)
     is_alive: bool = True
     refusal: LinkRefused | None = None
+    looked: int = 0
     worker: Worker | None = None
 
     def at(self, seconds: float, event: Event) -> None:
@@ -77,6 +80,8 @@ class ScriptedLink:
 
     def _play(self) -> None:
         """Words of the script: a fault command, or what happens to link and worker."""
+        self.looked += 1
+        assert self.looked < MOST_LOOKS, "time does not pass"
         while self.due and self._is_due():
             word = self.due[0][1]
             if not (isinstance(word, str) or callable(word)):

@@ -267,6 +267,15 @@ def test_what_became_of_each_target_when_it_fails(
     assert run.accounts[-1] == account
 
 
+def test_what_is_done_stays_done_when_the_rest_fails() -> None:
+    run = short_run()
+    run.until("retreat")
+    run.execution.end(ServoMissing(41, "does not answer"))
+    first, second = run.execution.account.targets
+    assert (first.status, first.error) == (DONE, None)
+    assert (second.status, second.error) == (NOT_STARTED, None)
+
+
 def test_only_a_cancel_is_canceled() -> None:
     for error, status in ((Canceled("on request"), CANCELED), (Stopped("on request"), FAILED)):
         run = short_run()
