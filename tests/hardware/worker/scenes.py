@@ -5,6 +5,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import orjson
+
 from hardware.arm.servo_arm import ServoArm
 from hardware.clock import RobotClock
 from hardware.end_effector.end_effectors import OFF, ON
@@ -147,6 +149,7 @@ class Scene:
     worker: Worker
     end_effector: PlainEndEffector
     journal: Journal
+    journal_file: Path
 
     def order(self, at_s: float = 0.5, execution_id: str = "e1") -> None:
         execute, motions = messages_of(plan_of_data_set_3(), execution_id)
@@ -171,9 +174,37 @@ class Scene:
     def telemetry(self) -> list[Telemetry]:
         return [said for said in self.link.said if isinstance(said, Telemetry)]
 
+    def ends(self) -> dict[str, str]:
+        """How each execution stands, by its id."""
+        return {account.execution_id: account.status for account in self.accounts()}
+
+    def reasons(self) -> dict[str, str]:
+        """Why executions did not go well, by their ids."""
+        return {one.execution_id: one.error.detail for one in self.accounts() if one.error}
+
+    def journaled(self) -> list[str]:
+        """What happened, by the journal on disk."""
+        lines = self.journal_file.read_bytes().splitlines()
+        return [str(orjson.loads(line)["event"]) for line in lines]
+
+    def spoil_journal(self) -> None:
+        """From now on it cannot be written."""
+        self.journal_file.unlink()
+        self.journal_file.mkdir()
+
+    def state_before(self, kind: type) -> Telemetry:
+        """What was said just before the first message of a kind."""
+        at = next(k for k, said in enumerate(self.link.said) if isinstance(said, kind))
+        state = self.link.said[at - 1]
+        assert isinstance(state, Telemetry)
+        return state
+
     def faults(self) -> list[str]:
         """Their codes, as they were told last."""
         return [fault.code for fault in self.telemetry()[-1].faults]
+
+    def acknowledge_reports(self) -> list[AcknowledgeReport]:
+        return [said for said in self.link.said if isinstance(said, AcknowledgeReport)]
 
     def stop_reports(self) -> list[StopReport]:
         return [said for said in self.link.said if isinstance(said, StopReport)]
@@ -185,9 +216,10 @@ def make_scene(folder: Path, bench: Bench | None = None, time_factor: float = 1.
     assert tool is not None
     end_effector = PlainEndEffector()
     link = ScriptedLink(bench, end_effector)
-    journal = Journal(folder / "worker.journal")
+    journal_file = folder / "worker.journal"
+    journal = Journal(journal_file)
     clock = RobotClock(time_factor, monotonic=bench.time.monotonic, sleep=bench.time.sleep)
     arm = ServoArm(bench.robot, bench.map, bench.bus, clock)
     worker = Worker(arm, tool, end_effector, link, journal, clock)  # type: ignore[arg-type]
     link.worker = worker
-    return Scene(bench, link, worker, end_effector, journal)
+    return Scene(bench, link, worker, end_effector, journal, journal_file)

@@ -156,8 +156,10 @@ def test_nothing_moves_where_the_arm_may_not_be() -> None:
     with pytest.raises(OutsideLimits) as caught:
         run.tick()
     run.execution.end(caught.value)
-    assert run.execution.account.status == FAILED
     assert goals_sent(bench.bus.sent) == []
+    # It was told to be under way before the servos were asked for anything.
+    course = [(account.status, account.segment) for account in run.accounts]
+    assert course == [(EXECUTING, "approach"), (FAILED, None)]
 
 
 # --- Arrival --------------------------------------------------------------------------------------

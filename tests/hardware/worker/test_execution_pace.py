@@ -1,5 +1,7 @@
 """Pause, resume and cancel: how the pace falls and rises, and what the light does meanwhile."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -23,10 +25,10 @@ def short_run(slower: float = 1.0) -> Run:
         return make_run(bench, built(bench, tool_of(bench.robot)))
     times = tuple(slower * at for at in motion.times_s)
     segments = tuple(
-        type(part)(part.name, slower * part.start_s, slower * part.end_s)
+        replace(part, start_s=slower * part.start_s, end_s=slower * part.end_s)
         for part in motion.segments
     )
-    slow = type(motion)(**{**vars(motion), "times_s": times, "segments": segments})
+    slow = replace(motion, times_s=times, segments=segments)
     return make_run(bench, built(bench, tool_of(bench.robot), targets=1, motions=[slow]))
 
 

@@ -129,14 +129,22 @@ def test_a_worker_that_stood_still_longer_than_the_service_waits_ends_the_motion
     assert len(after) == (1 if word == "oversleep" else 2)
 
 
-def test_how_long_is_too_long_is_told_by_the_wall_clock(tmp_path: Path) -> None:
+@pytest.mark.parametrize("factor", [10.0, 0.5])
+@pytest.mark.parametrize(("seconds", "status"), [(1.9, COMPLETED), (2.1, FAILED)])
+def test_how_long_is_too_long_is_told_by_the_wall_clock(
+    tmp_path: Path, factor: float, seconds: float, status: str
+) -> None:
     """Ten times as fast, nineteen seconds of the robot's are less than two of the service's."""
-    for seconds, status in ((1.9, COMPLETED), (2.1, FAILED)):
-        scene = make_scene(tmp_path / str(seconds), make_bench(noise_ticks=0), time_factor=10.0)
+    for word in ("sleep", "oversleep"):
+        bench = make_bench(noise_ticks=0)
+        scene = make_scene(tmp_path / word, bench, time_factor=factor)
+        times = goal_times(scene)
         scene.short_order(targets=1)
-        scene.link.at(0.52, f"sleep {seconds}")
-        scene.run(6.0)
+        scene.link.at(0.5 + 0.2 / factor, f"{word} {seconds}")
+        scene.run(4.0 + 3.0 / factor)
         assert scene.accounts()[-1].status == status
+    if status == FAILED:
+        assert len([at for at in times if at > times[0] + seconds]) == 1
 
 
 # --- Begin and end --------------------------------------------------------------------------------
