@@ -140,7 +140,7 @@ def test_how_long_is_too_long_is_told_by_the_wall_clock(
         scene = make_scene(tmp_path / word, bench, time_factor=factor)
         times = goal_times(scene)
         scene.short_order(targets=1)
-        scene.link.at(0.5 + 0.2 / factor, f"{word} {seconds}")
+        scene.link.at(0.5 + 0.14 / factor, f"{word} {seconds}")
         scene.run(4.0 + 3.0 / factor)
         assert scene.accounts()[-1].status == status
     if status == FAILED:
