@@ -156,7 +156,8 @@ def test_before_anything_comes_the_end_effector_is_off_and_the_servos_are_checke
     assert scene.end_effector.switched == [OFF]
     assert {sent.instruction for sent in told(scene.bench.bus.sent)} == {READ}
     assert (61, 0) in {(sent.servo_id, sent.address) for sent in told(scene.bench.bus.sent)}
-    assert len(scene.telemetry()) == 1
+    # Told when it begins and when it ends.
+    assert [said.status for said in scene.telemetry()] == ["idle", "idle"]
 
 
 @pytest.mark.parametrize(
@@ -189,6 +190,15 @@ def test_a_worker_that_ends_in_the_middle_has_told_what_became_of_it(scene: Scen
     assert not scene.link.is_alive
     assert scene.journal.unfinished == set()
     assert scene.bench.arm.hold().still
+
+
+def test_the_last_state_has_all_that_went_wrong_in_the_end(scene: Scene) -> None:
+    """That the end of an execution could not be noted is known when it was told already."""
+    scene.short_order()
+    scene.link.at(0.8, scene.spoil_journal)
+    scene.run(0.8)
+    assert isinstance(scene.link.said[-1], Telemetry)
+    assert scene.faults() == ["worker_ended", "journal_failed"]
 
 
 def test_a_worker_that_is_refused_in_the_middle_holds_and_leaves(scene: Scene) -> None:
