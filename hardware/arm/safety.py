@@ -56,15 +56,16 @@ def check_rows(robot: Robot, arm: ArmMap, times_s: Array, rows: Array) -> None:
     Raises:
         UnsafeGoal: times that do not rise, or a row or step that `check_goal` would refuse.
     """
-    steps = np.diff(times_s, prepend=times_s[0])
-    if not (np.isfinite(times_s).all() and (steps[1:] > 0).all()):
+    if not (np.isfinite(times_s).all() and (np.diff(times_s) > 0).all()):
         raise UnsafeGoal(robot.joint_names[0], "the times do not rise")
+    steps = np.diff(times_s, prepend=times_s[0])
     _check_steps(robot, arm, np.concatenate((rows[:1], rows[:-1])), rows, steps)
 
 
 def _check_steps(robot: Robot, arm: ArmMap, lasts: Array, goals: Array, steps: Array) -> None:
-    if not np.isfinite(goals).all():
-        raise UnsafeGoal(robot.joint_names[0], "a goal is not finite")
+    finite = np.isfinite(goals).all(axis=0)
+    if not finite.all():
+        raise UnsafeGoal(robot.joint_names[finite.argmin()], "a goal is not finite")
     slack = slack_rad(arm)
     outside = np.maximum(robot.lower - goals, goals - robot.upper) > slack
     change = np.abs(goals - lasts)

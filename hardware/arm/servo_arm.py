@@ -66,10 +66,10 @@ class ServoArm:
     @property
     def torque(self) -> str:
         """By the last reads: on, off or partly; unknown while a servo does not answer."""
-        powered = self.chain.powered
-        if len(powered) < len(self.map.motors):
+        powered = [self.chain.powered.get(motor.id) for motor in self.map.motors]
+        if None in powered:
             return "unknown"
-        return "on" if all(powered.values()) else "partly" if any(powered.values()) else "off"
+        return "on" if all(powered) else "partly" if any(powered) else "off"
 
     @property
     def commanded(self) -> Array:
@@ -241,12 +241,12 @@ class ServoArm:
             if any(motor.id not in positions for motor in drive.motors):
                 continue
             says = drive.first_motor_ticks(positions)
+            own = drive.goals(round(sum(says) / len(says)))
             try:
                 check_pair(drive, says)
             except PairDisagreement:
-                goals |= {servo_id: positions[servo_id] for servo_id in drive.goals(0)}
-            else:
-                goals |= drive.goals(round(sum(says) / len(says)))
+                own = {servo_id: positions[servo_id] for servo_id in own}
+            goals |= own
         return goals
 
     def _watch_power(self, drive: JointDrive) -> None:

@@ -78,7 +78,7 @@ def _check_servo(chain: ServoChain, drive: JointDrive, motor: Motor) -> None:
 def _check_range(chain: ServoChain, joint: Joint, drive: JointDrive, motor: Motor) -> None:
     lowest = chain.value(motor, "cw_angle_limit")
     highest = chain.value(motor, "ccw_angle_limit")
-    if lowest == highest == 0:
+    if not (lowest or highest):
         raise WrongSetting(motor.id, "both angle limits are 0: it would turn without end")
     ends = [float(drive.ticks(joint.lower)), float(drive.ticks(joint.upper))]
     if motor is not drive.motors[0]:

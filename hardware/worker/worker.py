@@ -124,7 +124,7 @@ class Worker:
                 due += late
         if self._execution is not None:
             self._fail(WorkerEnded("the worker was told to end"))
-        self._say_telemetry()
+        self._say_telemetry(now_due=True)
         self._link.close()
         if self._link.refusal is not None:
             raise self._link.refusal
@@ -281,7 +281,6 @@ class Worker:
 
     def _finish(self, execution: Execution) -> None:
         self._execution = None
-        self._steps = iter(())
         try:
             self._journal.end(execution.account.execution_id, execution.account.status)
         except JournalFailed as error:

@@ -1,6 +1,6 @@
 """Parts that the tests of this package share: an arm on simulated servos, in this process."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 
@@ -22,6 +22,7 @@ from hardware.servos.instances import load_instance
 from hardware.servos.joints import MIRRORED, ArmMap, load_arm
 from hardware.simulator.bus import SimulatedBus, simulated_arm
 from hardware.simulator.faults import apply_fault
+from hardware.simulator.servo import SimulatedServo
 from solver import Options, Plan, Problem, Robot, Target, solve
 
 DATA_SET_3 = (
@@ -35,15 +36,17 @@ DATA_SET_3 = (
 
 @dataclass
 class FakeTime:
-    """A wall clock that passes only when somebody sleeps."""
+    """A wall clock that passes only when somebody sleeps; the next sleep may last longer."""
 
     now_s: float = 1000.0
+    oversleep_s: float = 0.0
 
     def monotonic(self) -> float:
         return self.now_s
 
     def sleep(self, seconds: float) -> None:
-        self.now_s += seconds
+        self.now_s += seconds + self.oversleep_s
+        self.oversleep_s = 0.0
 
 
 @dataclass
@@ -94,6 +97,43 @@ class InProcessBus:
 
 
 @dataclass(frozen=True)
+class Sent:
+    """What an instruction packet says.
+
+    Attributes:
+        servo_id: whom it is for; BROADCAST_ID in a sync write.
+        address: the first register that it reads or writes.
+        rows: of a sync write goal and speed by servo id [counts], of others nothing.
+    """
+
+    servo_id: int
+    instruction: int
+    address: int
+    rows: Mapping[int, tuple[int, int]]
+
+
+def told(packets: Sequence[bytes]) -> list[Sent]:
+    """Instruction packets taken apart."""
+    return [Sent(packet[2], packet[4], packet[5], _rows(packet)) for packet in packets]
+
+
+def goals_sent(packets: Sequence[bytes]) -> list[Mapping[int, tuple[int, int]]]:
+    """Goals and speeds by servo id [counts], of each packet that has any."""
+    return [sent.rows for sent in told(packets) if sent.instruction == SYNC_WRITE]
+
+
+def _rows(packet: bytes) -> Mapping[int, tuple[int, int]]:
+    if packet[4] != SYNC_WRITE:
+        return {}
+    assert packet[5:7] == bytes((30, 4)), "goal position and moving speed, two bytes each"
+    shares = [packet[i : i + 5] for i in range(7, len(packet) - 1, 5)]
+    return {
+        share[0]: (int.from_bytes(share[1:3], "little"), int.from_bytes(share[3:5], "little"))
+        for share in shares
+    }
+
+
+@dataclass(frozen=True)
 class Bench:
     """An arm on simulated servos, and the time that both live in."""
 
@@ -106,15 +146,24 @@ class Bench:
     def fault(self, command: str) -> None:
         apply_fault(self.bus.simulated, command)
 
+    def servo(self, servo_id: int) -> SimulatedServo:
+        servo = self.bus.simulated.servo(servo_id)
+        assert servo is not None
+        return servo
+
     def true_joints(self) -> list[float]:
         servos = {servo.servo_id: servo.position for servo in self.bus.simulated.servos}
         return list(self.map.joints(servos).tolist())
 
 
 def make_bench(
-    start: tuple[float, ...] | None = None, *, seed: int = 0, coupling_of_joint_2: str = MIRRORED
+    start: tuple[float, ...] | None = None,
+    *,
+    seed: int = 0,
+    coupling_of_joint_2: str = MIRRORED,
+    noise_ticks: int = 1,
 ) -> Bench:
-    """An arm that stands at `start` [rad], or at home."""
+    """An arm that stands at `start` [rad], or at home; without noise its servos say where."""
     robot = load_instance("tabletop").robot
     arm_map = load_arm(robot, "tabletop")
     first, second, *others = arm_map.drives
@@ -122,7 +171,8 @@ def make_bench(
     arm_map = replace(arm_map, drives=(first, second, *others))
     time = FakeTime()
     clock = RobotClock(monotonic=time.monotonic, sleep=time.sleep)
-    simulated = simulated_arm(arm_map, start or robot.home_joints, time.monotonic, seed)
+    joints = start or robot.home_joints
+    simulated = simulated_arm(arm_map, joints, time.monotonic, seed, noise_ticks)
     bus = InProcessBus(simulated)
     return Bench(robot, arm_map, ServoArm(robot, arm_map, bus, clock), bus, time)
 

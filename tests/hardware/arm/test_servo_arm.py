@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from hardware.arm.setup_check import is_simulated
 from hardware.exceptions import (
     FollowingError,
     HardwareError,
@@ -11,7 +10,6 @@ from hardware.exceptions import (
     ServoMissing,
     TorqueLost,
     UnsafeGoal,
-    WrongSetting,
 )
 from hardware.tolerances import TICK_S
 from tests.hardware.parts import Bench, make_bench
@@ -43,41 +41,6 @@ def test_a_check_writes_nothing_and_learns_whether_torque_is_on(bench: Bench) ->
 
 
 @pytest.mark.parametrize(
-    ("servo_id", "register", "value", "said"),
-    [
-        (11, "model_number", 28, "RX-64"),
-        (51, "status_return_level", 1, "return level"),
-        (61, "torque_limit", 0, "torque limit"),
-        (22, "drive_mode", 2, "drive mode"),
-        (21, "drive_mode", 1, "drive mode"),
-        (41, "ccw_angle_limit", 900, "angle limits"),
-        (32, "cw_angle_limit", 500, "angle limits"),
-    ],
-)
-def test_settings_that_forbid_safe_use_are_named(
-    bench: Bench, servo_id: int, register: str, value: int, said: str
-) -> None:
-    set_register(bench, servo_id, register, value)
-    with pytest.raises(WrongSetting, match=said) as caught:
-        bench.arm.check()
-    assert caught.value.servo_id == servo_id
-
-
-def test_endless_turn_is_refused(bench: Bench) -> None:
-    set_register(bench, 51, "ccw_angle_limit", 0)
-    with pytest.raises(WrongSetting, match="without end"):
-        bench.arm.check()
-
-
-def test_narrower_angle_limits_that_leave_the_joints_range_are_fine(bench: Bench) -> None:
-    """Joint 5 turns through 91 degrees each way of its servo's 150."""
-    set_register(bench, 51, "cw_angle_limit", 150)
-    set_register(bench, 51, "ccw_angle_limit", 870)
-    bench.arm.check()
-    assert bench.arm.torque == "off"
-
-
-@pytest.mark.parametrize(
     ("command", "error"),
     [
         ("missing 31", ServoMissing),
@@ -91,16 +54,6 @@ def test_a_check_finds_what_is_wrong(
     bench.fault(command)
     with pytest.raises(error):
         bench.arm.check()
-
-
-def test_simulated_servos_are_known_as_such(bench: Bench) -> None:
-    assert is_simulated(bench.arm.chain)
-    bench.fault("missing 11")
-    assert is_simulated(bench.arm.chain)
-    set_register(bench, 21, "firmware_version", 23)
-    assert not is_simulated(bench.arm.chain)
-    bench.fault("silent")
-    assert not is_simulated(bench.arm.chain)
 
 
 def test_torque_comes_on_where_the_arm_stands_whatever_stale_goal_there_was(

@@ -1,8 +1,7 @@
 """Orders carried out on simulated servos, in time that passes tick by tick."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -31,80 +30,15 @@ from hardware.link.messages import (
     PAUSED,
     SKIPPED,
     UNKNOWN,
-    ExecutionAccount,
 )
 from hardware.servos.joints import MIRRORED, SYNC_CABLE
 from hardware.tolerances import TICK_S
-from hardware.worker.execution import Execution
 from hardware.worker.order import Order, build_order
-from solver import Robot, Tool
-from tests.hardware.parts import Bench, make_bench, messages_of, plan_of_data_set_3
+from tests.hardware.parts import Bench, goals_sent, make_bench, messages_of, plan_of_data_set_3
+from tests.hardware.worker.runs import Run, make_run, tool_of
 
 START_OFFSET = (0.15, -0.1, 0.2, -0.1, -0.2, 0.3)
 MOST_ERROR_M = 0.003
-
-
-@dataclass
-class RecordedEndEffector:
-    state: str = OFF
-    changes: list[tuple[str, str]] = field(default_factory=list)
-    accounts: list[ExecutionAccount] = field(default_factory=list)
-
-    def switch(self, *, on: bool) -> None:
-        self.state = ON if on else OFF
-        self.changes.append((self.accounts[-1].segment or "", self.state))
-
-    def stay_on(self) -> None:
-        if self.state != ON:
-            raise EndEffectorFailed("it went off")
-
-    def check(self) -> None:
-        pass
-
-    def recover(self) -> None:
-        self.switch(on=False)
-
-    def close(self) -> None:
-        self.state = OFF
-
-
-@dataclass
-class Run:
-    bench: Bench
-    execution: Execution
-    steps: Iterator[None]
-    end_effector: RecordedEndEffector
-    accounts: list[ExecutionAccount]
-    postures: list[list[float]] = field(default_factory=list)
-    segments: list[str | None] = field(default_factory=list)
-
-    def tick(self) -> bool:
-        """One period of the control loop; False when the order is done."""
-        try:
-            next(self.steps)
-        except StopIteration:
-            return False
-        self.bench.arm.poll()
-        self.bench.time.sleep(TICK_S)
-        self.postures.append(self.bench.true_joints())
-        self.segments.append(self.execution.account.segment)
-        return True
-
-    def until(self, segment: str, ticks: int = 0) -> None:
-        while self.execution.account.segment != segment:
-            assert self.tick()
-        for _ in range(ticks):
-            assert self.tick()
-
-    def finish(self) -> None:
-        while self.tick():
-            pass
-
-
-def tool_of(robot: Robot) -> Tool:
-    tool = robot.tool(robot.default_tool)
-    assert tool is not None
-    return tool
 
 
 def order_for(bench: Bench, **changes: object) -> Order:
@@ -120,13 +54,7 @@ def start_run(seed: int = 0, coupling_of_joint_2: str = MIRRORED) -> Run:
         seed=seed,
         coupling_of_joint_2=coupling_of_joint_2,
     )
-    bench.arm.check()
-    accounts: list[ExecutionAccount] = []
-    end_effector = RecordedEndEffector(accounts=accounts)
-    execution = Execution(
-        order_for(bench), bench.arm, tool_of(bench.robot), end_effector, accounts.append
-    )
-    return Run(bench, execution, execution.steps(), end_effector, accounts)
+    return make_run(bench, order_for(bench))
 
 
 @pytest.fixture(scope="module")
@@ -167,7 +95,9 @@ def test_a_pair_on_a_sync_cable_gets_goals_for_its_master_alone() -> None:
     run.finish()
     assert run.execution.account.status == COMPLETED
     assert max(t.target_error_m or 1 for t in run.execution.account.targets) < MOST_ERROR_M
-    assert {tuple(packet) for packet in sync_rows(run)} == {(11, 21, 31, 32, 41, 51, 61)}
+    assert {tuple(packet) for packet in goals_sent(run.bench.bus.sent)} == {
+        (11, 21, 31, 32, 41, 51, 61)
+    }
 
 
 def test_it_ends_holding_at_the_last_standby(finished: Run) -> None:
@@ -204,29 +134,10 @@ def test_the_way_to_the_start_is_slow(finished: Run) -> None:
     assert 0.2 < speeds.max() < finished.bench.robot.velocity.max() * 0.25 * 1.5
 
 
-def sync_rows(run: Run) -> list[dict[int, tuple[int, int]]]:
-    """Goal and speed by servo id, for each SYNC_WRITE that was sent."""
-    found = []
-    for packet in run.bench.bus.sent:
-        if packet[4] == SYNC_WRITE:
-            assert packet[5:7] == bytes((30, 4))
-            shares = [packet[i : i + 5] for i in range(7, len(packet) - 1, 5)]
-            found.append(
-                {
-                    share[0]: (
-                        int.from_bytes(share[1:3], "little"),
-                        int.from_bytes(share[3:5], "little"),
-                    )
-                    for share in shares
-                }
-            )
-    return found
-
-
 def test_every_packet_is_safe(finished: Run) -> None:
     """Pairs mirrored, speeds above zero and below the limits, goals inside the joint limits."""
     bench = finished.bench
-    packets = sync_rows(finished)
+    packets = goals_sent(finished.bench.bus.sent)
     assert len(packets) > 400
     for packet in packets:
         assert list(packet) == [11, 21, 22, 31, 32, 41, 51, 61]

@@ -1,7 +1,6 @@
 """The worker's loop with a link that the test speaks through; servos and time are simulated."""
 
 from collections import deque
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hardware.arm.servo_arm import ServoArm
-from hardware.clock import RobotClock
 from hardware.end_effector.end_effectors import OFF, ON
-from hardware.exceptions import EndEffectorFailed
 from hardware.link.messages import (
     CANCELED,
     COMPLETED,
@@ -23,152 +19,13 @@ from hardware.link.messages import (
     AcknowledgeReport,
     Cancel,
     ExecutionAccount,
-    FromService,
     Pause,
     Resume,
     Stop,
-    StopReport,
     Telemetry,
 )
 from hardware.link.worker_end import LinkRefused
-from hardware.worker.journal import Journal
-from hardware.worker.worker import Worker
-from tests.hardware.parts import Bench, make_bench, messages_of, plan_of_data_set_3
-
-LONGEST_RUN_S = 60.0
-
-
-@dataclass
-class ScriptedLink:
-    """A robot link; `due` says what comes at which wall clock instant."""
-
-    bench: Bench
-    end_effector: "PlainEndEffector"
-    due: deque[tuple[float, FromService | str]] = field(default_factory=deque)
-    said: list[Telemetry | ExecutionAccount | StopReport | AcknowledgeReport] = field(
-        default_factory=list
-    )
-    is_alive: bool = True
-    refusal: LinkRefused | None = None
-    worker: Worker | None = None
-
-    def at(self, seconds: float, message: FromService | str) -> None:
-        self.due.append((self.bench.time.now_s + seconds, message))
-
-    def next_stop(self) -> Stop | None:
-        self._play()
-        if self.due and isinstance(self.due[0][1], Stop) and self._is_due():
-            message = self.due.popleft()[1]
-            assert isinstance(message, Stop)
-            return message
-        return None
-
-    def next_message(self) -> FromService | None:
-        if self.due and self._is_due() and not isinstance(self.due[0][1], Stop | str):
-            message = self.due.popleft()[1]
-            assert not isinstance(message, str)
-            return message
-        return None
-
-    def say(self, message: Telemetry | ExecutionAccount | StopReport | AcknowledgeReport) -> None:
-        self.said.append(message)
-
-    def close(self) -> None:
-        self.is_alive = False
-
-    def _is_due(self) -> bool:
-        return self.due[0][0] <= self.bench.time.now_s
-
-    def _play(self) -> None:
-        """Words of the script: a fault command, or what happens to link and worker."""
-        while self.due and self._is_due() and isinstance(self.due[0][1], str):
-            word = str(self.due.popleft()[1])
-            if word == "lose":
-                self.is_alive = False
-            elif word == "find":
-                self.is_alive = True
-            elif word == "unplug":
-                self.bench.bus.gone = True
-            elif word == "sleep":
-                self.bench.time.sleep(5)
-            elif word == "break end-effector":
-                self.end_effector.gone = True
-            elif word == "end":
-                assert self.worker is not None
-                self.worker.end()
-            else:
-                self.bench.fault(word)
-
-
-@dataclass
-class PlainEndEffector:
-    state: str = OFF
-    broken: bool = False
-    gone: bool = False
-    switched: list[str] = field(default_factory=list)
-
-    def switch(self, *, on: bool) -> None:
-        self.check()
-        if self.broken and on:
-            raise EndEffectorFailed("it does not come on")
-        self.state = ON if on else OFF
-        self.switched.append(self.state)
-
-    def stay_on(self) -> None:
-        assert self.state == ON
-
-    def check(self) -> None:
-        if self.gone:
-            raise EndEffectorFailed("it is gone")
-
-    def recover(self) -> None:
-        self.gone = False
-        self.switch(on=False)
-
-    def close(self) -> None:
-        self.state = OFF
-
-
-@dataclass
-class Scene:
-    bench: Bench
-    link: ScriptedLink
-    worker: Worker
-    end_effector: PlainEndEffector
-    journal: Journal
-
-    def order(self, at_s: float = 0.5, execution_id: str = "e1") -> None:
-        execute, motions = messages_of(plan_of_data_set_3(), execution_id)
-        self.link.at(at_s, execute)
-        for motion in motions:
-            self.link.at(at_s, motion)
-
-    def run(self, seconds: float = LONGEST_RUN_S) -> None:
-        self.link.at(seconds, "end")
-        self.worker.run()
-
-    def accounts(self) -> list[ExecutionAccount]:
-        return [said for said in self.link.said if isinstance(said, ExecutionAccount)]
-
-    def telemetry(self) -> list[Telemetry]:
-        return [said for said in self.link.said if isinstance(said, Telemetry)]
-
-    def stop_reports(self) -> list[StopReport]:
-        return [said for said in self.link.said if isinstance(said, StopReport)]
-
-
-def make_scene(folder: Path, bench: Bench | None = None) -> Scene:
-    bench = bench or make_bench()
-    tool = bench.robot.tool(bench.robot.default_tool)
-    assert tool is not None
-    end_effector = PlainEndEffector()
-    link = ScriptedLink(bench, end_effector)
-    journal = Journal(folder / "worker.journal")
-    clock = RobotClock(monotonic=bench.time.monotonic, sleep=bench.time.sleep)
-    arm = ServoArm(bench.robot, bench.map, bench.bus, clock)
-    worker = Worker(arm, tool, end_effector, link, journal, clock)  # type: ignore[arg-type]
-    link.worker = worker
-    return Scene(bench, link, worker, end_effector, journal)
+from tests.hardware.worker.scenes import Scene, make_scene
 
 
 @pytest.fixture
@@ -340,7 +197,7 @@ def test_after_a_stop_orders_are_refused_until_acknowledged(scene: Scene) -> Non
         ("silent", "servo_missing"),
         ("unplug", "bus_lost"),
         ("lose", "link_lost"),
-        ("sleep", "link_lost"),
+        ("sleep 5", "link_lost"),
     ],
 )
 def test_trouble_in_the_middle_ends_it_with_the_cause(
