@@ -55,6 +55,7 @@ _ALL = (
     Subject("savings", "Effort saved"),
     Subject("certificate", "Proven bounds"),
     Subject("refusals", "Refusals explained"),
+    Subject("clearance", "What touches"),
     Subject("large_batch", "100,000 targets"),
     Subject("second_process", "Start of a second process"),
     Subject("thesis", "Beside the thesis: data set 3"),

@@ -12,7 +12,7 @@ from solver.kinematics.numerical import locate
 from solver.robots.model import Array
 from solver.scene.distances import distance_to_box, distance_to_plane, squared_between
 from solver.scene.grid import HALF_DIAGONAL, first_and_last
-from solver.scene.tolerances import GRID_STEP_CELLS, GUESSED_ITEMS
+from solver.scene.tolerances import GRID_STEP_CELLS, GUESSED_ITEMS, LEAST_FREE_CELLS
 
 NOBODY = cast(int, np.int64(-1))
 """The number of no obstacle, and of no shape."""
@@ -162,8 +162,9 @@ def nearest_in_grid(one, rows, grid, most, number, enough):
     while done <= length:
         share = done * per_metre
         x, y, z = one[0] + share * one[3], one[1] + share * one[4], one[2] + share * one[5]
-        free = gap_at(grid, x, y, z) - one[6] - most
-        if free > 0.0:
+        # Inside something the gap is zero, however deep.
+        free = gap_at(grid, x, y, z) - max(one[6] + most, 0.0)
+        if free > LEAST_FREE_CELLS * grid.cell:
             done += free
             continue
         ahead = min(step, length - done) * per_metre

@@ -21,3 +21,6 @@ INSIDE_STEPS: Final = 60
 GUESSED_ITEMS: Final = 4
 """So many things of a cell are looked at for a first guess of what is nearest: one of them is as
 good as any."""
+
+LEAST_FREE_CELLS: Final = 0.2
+"""A link's axis is not gone along in shorter steps; what is around is looked at then [cells]."""

@@ -42,6 +42,16 @@ def test_unknown_robot_names_the_known_ones() -> None:
         ('servo = "RX-64"', 'kind = "prismatic"', "lower_m"),
         ("drive_inertia_kg_m2 = 8.0e-3", "drive_mass_kg = 8.0e-3", "drive_mass_kg"),
         ("centre_m = [0.0, 0.0, 0.0]", "centre_m = [0.0, 0.0]", "cannot be read"),
+        ("radius_m = 0.033", "radius_m = 0.0", "joint_1 has a shape without a size"),
+        ("gap_m = 0.03", "gap_m = -0.03", "tool scaffold has a shape without a size"),
+        ("size_m = [0.8, 0.8, 0.8]", "size_m = [0.8, 0.0, 0.8]", "table has a shape without"),
+        ("size_m = [0.8, 0.8, 0.8]", "size_m = [0.8, 0.8]", "cannot be read"),
+        ("start_m = [0.0, 0.0, -0.03]", "start_m = [0.0, 0.0]", "cannot be read"),
+        ('name = "base"', 'name = "joint_2"', "have one name"),
+        ('["table", "joint_2"]', '["table", "joint_9"]', "no two that move"),
+        ('["table", "joint_2"]', '["table", "base"]', "no two that move"),
+        ('["table", "joint_2"]', '["joint_2", "joint_2"]', "no two that move"),
+        ('["table", "joint_2"]', '["joint_2"]', "cannot be read"),
     ],
 )
 def test_broken_model_files_are_refused(old: str, new: str, message: str) -> None:

@@ -1,0 +1,100 @@
+"""What touches and how near it comes: cost of a posture, and MuJoCo's opinion of a million."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from bench.measure import Row, row, scaled
+from bench.scenes import leaves, mixed, postures, twigs
+from bench.second_opinion import MujocoArm
+from solver import load_robot
+from solver.robots.model import Array, Robot, Tool
+from solver.scene.arm_body import arm_body
+from solver.scene.many_postures import nearest_pairs, touching
+from solver.scene.obstacles import Scene
+from solver.scene.packing import Obstacles, pack_scene
+
+CLEARANCE_M, UP_TO_M = 0.005, 0.05
+POINTS = 100_000
+RUNS = 15
+AT_CONTACT_M = 1e-6
+"""Nearer to contact than that postures are counted apart."""
+
+WANTED_US = {20: 0.8, 200: 2.5, 2000: 10.0}
+POINTS_US, NEAREST_US, FIRST_MS = 3.0, 10.0, 150.0
+
+
+def measure(quick: bool) -> list[Row]:
+    """Free postures of the table-top arm among twigs, and among points; MuJoCo among all."""
+    robot = load_robot("tabletop")
+    tool = robot.tools[0]
+    count = 300 if quick else 20_000
+    rows = []
+    for number, wanted in WANTED_US.items():
+        obstacles = pack_scene(Scene(twigs(number, number, 0.3)), robot.reach_m(tool))
+        name = f"whether a free posture touches, {number:,} capsules"
+        rows.append(_touch(name, robot, tool, obstacles, count, wanted))
+    cloud = Scene((), (), (), (leaves(7, 1000 if quick else POINTS, clusters=60),))
+    began = time.perf_counter()
+    obstacles = pack_scene(cloud, robot.reach_m(tool))
+    touching(arm_body(robot, tool), obstacles, CLEARANCE_M, postures(robot, 1, 1))
+    times = [time.perf_counter() - began]
+    for _ in range(4):
+        began = time.perf_counter()
+        obstacles = pack_scene(cloud, robot.reach_m(tool))
+        touching(arm_body(robot, tool), obstacles, CLEARANCE_M, postures(robot, 1, 1))
+        times.append(time.perf_counter() - began)
+    name = f"whether a free posture touches, {POINTS:,} points"
+    rows.append(_touch(name, robot, tool, obstacles, count, POINTS_US))
+    free = _free(robot, tool, obstacles, count)
+    name = f"nearest pair up to {UP_TO_M * 100:g} cm, {POINTS:,} points"
+    spent = _spent_us(lambda: nearest_pairs(arm_body(robot, tool), obstacles, UP_TO_M, free), free)
+    rows.append(row(name, spent, "us", at_most=NEAREST_US))
+    name = f"from {POINTS:,} points in memory to the first posture looked at"
+    rows.append(row(name, scaled(times[1:], 1e3), "ms", at_most=FIRST_MS))
+    return [*rows, *_second_opinion(robot, 500 if quick else 1_000_000)]
+
+
+def _touch(
+    name: str, robot: Robot, tool: Tool, obstacles: Obstacles, count: int, wanted: float
+) -> Row:
+    free = _free(robot, tool, obstacles, count)
+    body = arm_body(robot, tool)
+    spent = _spent_us(lambda: touching(body, obstacles, CLEARANCE_M, free), free)
+    note = f"{1 - len(free) / count:.0%} of random postures touch, and leave early"
+    return row(name, spent, "us", at_most=wanted, note=note)
+
+
+def _free(robot: Robot, tool: Tool, obstacles: Obstacles, count: int) -> Array:
+    drawn = postures(robot, 2, count)
+    return drawn[~touching(arm_body(robot, tool), obstacles, CLEARANCE_M, drawn)]
+
+
+def _spent_us(look: Callable[[], object], free: Array) -> list[float]:
+    look()
+    times = []
+    for _ in range(RUNS):
+        began = time.perf_counter()
+        look()
+        times.append(1e6 * (time.perf_counter() - began) / len(free))
+    return times
+
+
+def _second_opinion(robot: Robot, count: int) -> list[Row]:
+    tools, scenes = robot.tools, 10
+    disagreeing = at_contact = touched = 0
+    for k in range(scenes):
+        tool, scene = tools[k % len(tools)], mixed(100 + 3 * k)
+        second, obstacles = MujocoArm(robot, tool, scene), pack_scene(scene, robot.reach_m(tool))
+        drawn = postures(robot, 200 + k, count // scenes)
+        pairs = nearest_pairs(arm_body(robot, tool), obstacles, UP_TO_M, drawn)
+        near = np.abs(pairs.distances_m) < AT_CONTACT_M
+        says = np.array([second.distance(q) < 0.0 for q in drawn])
+        mine = pairs.distances_m < 0.0
+        disagreeing += int(np.count_nonzero((says != mine) & ~near))
+        at_contact += int(np.count_nonzero(near))
+        touched += int(np.count_nonzero(mine))
+    name = f"postures on which MuJoCo disagrees, of {count:,}"
+    note = f"{touched / count:.0%} touch; {at_contact} within a micrometre of contact left out"
+    return [row(name, disagreeing, "", runs=count, at_most=0, note=note)]
