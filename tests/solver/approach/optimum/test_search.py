@@ -1,0 +1,356 @@
+"""The least effort on arcs, of joints that turn as they are told, against dense samples."""
+
+import math
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.approach.optimum import search
+from solver.approach.optimum.effort_samples import MOST_SAMPLES
+from solver.approach.optimum.search import (
+    is_smooth,
+    kink,
+    least_effort,
+    least_in_cell,
+    optimum_on_arcs,
+    refine_cell,
+    smooth_minimum,
+    swings_between,
+    valley,
+)
+from solver.approach.task.packed import NUMBERS, REFERENCE, SQUARED, WEIGHTS, PackedTask
+from solver.robots.model import Array
+from tests.solver.interpreted import interpret, interpreted
+
+Joints = Callable[[Array], Array]
+WEIGHTS_OF = np.array([1.0, 2.0, 0.5, 1.5, 1.0, 3.0])
+
+
+def task_of(squared: bool = False) -> Any:
+    numbers = np.zeros(NUMBERS)
+    numbers[REFERENCE : REFERENCE + 6] = 0.1, -0.2, 0.3, 0.0, 0.5, -0.4
+    numbers[WEIGHTS : WEIGHTS + 6] = WEIGHTS_OF
+    numbers[SQUARED] = squared
+    return PackedTask(numbers, np.zeros(2), np.zeros(1))
+
+
+def cost(task: Any, joints: Array) -> Array:
+    travel = joints - task.numbers[REFERENCE : REFERENCE + 6, None]
+    parts = travel**2 if task.numbers[SQUARED] else np.abs(travel)
+    return np.asarray(WEIGHTS_OF @ parts)
+
+
+def scratch_of() -> Any:
+    return SimpleNamespace(
+        angles=np.full(MOST_SAMPLES, np.nan),
+        joints=np.full((6, MOST_SAMPLES), np.nan),
+        efforts=np.full(MOST_SAMPLES, np.nan),
+    )
+
+
+class Told:
+    """Joints as functions of the angle; how many were asked for, and on which branches."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, joints: Joints) -> None:
+        self.joints, self.count, self.branches = joints, 0, set[int]()
+        interpret(monkeypatch, search, sample_effort=self._sample)
+
+    def _sample(self, task: Any, scratch: Any, branch: int, count: int) -> None:
+        self.count += count
+        self.branches.add(int(branch))
+        angles = scratch.angles[:count]
+        assert not np.isnan(angles).any()
+        scratch.joints[:, :count] = self.joints(angles)
+        scratch.efforts[:count] = cost(task, scratch.joints[:, :count])
+
+
+def waving(angles: Array) -> Array:
+    """Joints that pass their references, some of them twice."""
+    x = np.asarray(angles)
+    return np.stack(
+        (
+            0.8 * np.sin(2 * x),
+            0.5 * x - 0.2,
+            np.cos(3 * x),
+            -0.7 * x + 0.1,
+            0.4 * x**2,
+            0.3 * x - 0.5,
+        )
+    )
+
+
+def swinging(angles: Array) -> Array:
+    """The fourth turns by half a turn within a hundredth, the sixth against it."""
+    x = np.asarray(angles)
+    turn = 1.5 * np.tanh((x - 0.31) / 0.004)
+    return np.stack((0.2 * x, 0.5 * x - 0.2, 0 * x, turn, 0.4 * x, -turn - 0.4 * x))
+
+
+def bowl(angles: Array) -> Array:
+    """No joint passes its reference: the effort is smooth."""
+    x = np.asarray(angles)
+    return np.stack(
+        (2 + (x - 0.3) ** 2, 2 + 0 * x, 3 + 0.2 * np.cosh(x), 2 + 0 * x, 3 - 0.1 * x, 1 + 0 * x)
+    )
+
+
+MOVES = {"waving": waving, "swinging": swinging, "bowl": bowl}
+
+
+def dense(task: Any, joints: Joints, low: float, high: float) -> float:
+    return float(cost(task, joints(np.linspace(low, high, 400_001))).min())
+
+
+@pytest.mark.parametrize("name", MOVES)
+@pytest.mark.parametrize("squared", [False, True])
+@pytest.mark.parametrize(("low", "high"), [(-1.0, 1.3), (0.2, 0.35), (0.29, 0.2901), (-3.0, 3.2)])
+def test_nothing_on_an_arc_is_cheaper(
+    monkeypatch: pytest.MonkeyPatch, name: str, squared: bool, low: float, high: float
+) -> None:
+    task, told = task_of(squared), Told(monkeypatch, MOVES[name])
+    angle, effort, refined = interpreted(least_effort)(
+        task, scratch_of(), scratch_of(), 5, low, high, True, True, math.inf
+    )
+    least = dense(task, MOVES[name], low, high)
+    assert low <= angle <= high
+    assert effort == pytest.approx(cost(task, MOVES[name](np.array([angle])))[0], rel=1e-12)
+    assert effort <= least + 1e-11
+    assert effort >= least - 4e-3
+    assert told.branches == {5}
+    assert refined >= 1
+    # What is not below what is known already is not looked for.
+    again = interpreted(least_effort)(
+        task, scratch_of(), scratch_of(), 5, low, high, True, True, effort
+    )
+    assert math.isnan(again[0])
+    assert again[1] == effort
+    beaten = interpreted(least_effort)(
+        task, scratch_of(), scratch_of(), 5, low, high, True, True, effort * (1 + 1e-6)
+    )
+    assert beaten[1] == pytest.approx(effort, rel=1e-12)
+
+
+def test_few_cells_of_a_smooth_effort_are_looked_at_closely(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where it has a cusp at an end those cells are, however smooth it looks."""
+
+    def flat(x: Array) -> Array:
+        joints = np.full((6, len(x)), 3.0)
+        joints[0] += 0.5 * x + 0.01 * (x - 0.3) ** 2
+        joints[4] -= 0.5 * x
+        return joints
+
+    counts = {}
+    for cusps in ((False, False), (True, False), (False, True), (True, True)):
+        Told(monkeypatch, flat)
+        found = interpreted(least_effort)(
+            task_of(), scratch_of(), scratch_of(), 0, 0.0, 0.62, *cusps, math.inf
+        )
+        counts[cusps] = found[2]
+    assert counts[False, False] <= 3
+    assert counts[True, False] == counts[False, True] == counts[False, False] + 1
+    assert counts[True, True] == counts[False, False] + 2
+
+
+def test_arcs_are_sampled_every_three_hundredths_and_four_times_at_least(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen: list[int] = []
+
+    def sample(task: Any, scratch: Any, branch: int, count: int) -> None:
+        seen.append(count)
+        angles = scratch.angles[:count]
+        assert np.diff(angles) == pytest.approx(np.full(count - 1, angles[1] - angles[0]))
+        assert (angles[0], angles[-1]) == (0.25, high)
+        scratch.joints[:, :count], scratch.efforts[:count] = 5.0, 9.0
+
+    interpret(monkeypatch, search, sample_effort=sample, least_in_cell=lambda *_: 10.0)
+    for high, count in ((0.26, 5), (0.25 + 0.29, 11), (0.25 + 2 * math.pi, 211)):
+        seen.clear()
+        result = interpreted(least_effort)(
+            task_of(), scratch_of(), scratch_of(), 0, 0.25, high, True, True, math.inf
+        )
+        assert seen == [count]
+        assert result == (0.25, 9.0, 0)
+
+
+def test_the_cheapest_of_some_arcs(monkeypatch: pytest.MonkeyPatch) -> None:
+    efforts = {0.1: 5.0, 0.2: 3.0, 0.3: 4.0, 0.4: 3.0}
+    asked: list[tuple[Any, ...]] = []
+
+    def least(task: Any, samples: Any, cell: Any, branch: int, low: float, high: float,
+              low_cusp: bool, high_cusp: bool, best: float) -> Any:  # fmt: skip
+        assert low_cusp
+        assert high_cusp
+        asked.append((task.numbers.tolist(), int(branch), float(low), float(high), best))
+        cost = efforts[float(low)]
+        return (low + 0.01, cost, 3) if cost < best else (math.nan, best, 2)
+
+    interpret(monkeypatch, search, least_effort=least, effort_scratch=lambda rows: rows)
+    numbers, given = np.array([[1.0], [2.0]]), np.array([0, 1, 1, 0])
+    lower = np.array([0.1, 0.2, 0.3, 0.4])
+    found = interpreted(optimum_on_arcs)(
+        numbers, np.zeros(3), np.zeros(2), given, np.array([4, 5, 6, 7]), lower, lower + 0.05
+    )
+    assert found == (1, pytest.approx(0.21), 3.0, 10)
+    assert [one[:2] for one in asked] == [([1.0], 4), ([2.0], 5), ([2.0], 6), ([1.0], 7)]
+    assert [one[4] for one in asked] == [math.inf, 5.0, 3.0, 3.0]
+    none = interpreted(optimum_on_arcs)(numbers, np.zeros(3), np.zeros(2), *[np.zeros(0)] * 4)
+    assert (none[0], none[2], none[3]) == (-1, math.inf, 0)
+    assert math.isnan(none[1])
+
+
+@pytest.mark.parametrize("squared", [False, True])
+def test_what_effort_is_at_least_between_two_samples(squared: bool) -> None:
+    """Each joint's smaller travel less half of what it turns beside; nothing where it passes."""
+    task = task_of(squared)
+    joints = np.random.default_rng(1).uniform(-1.0, 1.0, (6, 5))
+    for k in range(4):
+        expected = 0.0
+        for i in range(6):
+            travel = joints[i] - task.numbers[REFERENCE + i]
+            around = [n for n in (k - 1, k, k + 1) if 0 <= n < 4]
+            beside = max(abs(travel[n + 1] - travel[n]) for n in around)
+            a, b = travel[k], travel[k + 1]
+            least = 0.0 if a * b < 0 else max(min(abs(a), abs(b)) - beside / 2, 0.0)
+            expected += WEIGHTS_OF[i] * (least**2 if squared else least)
+        assert least_in_cell(task, joints, k, 5) == pytest.approx(expected)
+
+
+def steady(travel: float, step: float) -> Array:
+    """Joints so far from their references, that turn so far from sample to sample."""
+    return task_of().numbers[REFERENCE : REFERENCE + 6, None] + travel + step * np.arange(6.0)
+
+
+@pytest.mark.parametrize(
+    ("travel", "step", "squared", "smooth"),
+    [
+        (1.0, 0.09, False, True),
+        (1.0, 0.11, False, False),
+        (1.0, 0.11, True, False),
+        (-1.0, -0.09, False, True),
+        # Nearer to its reference than half of what it turns: it may have passed it.
+        (0.01, 0.04, False, False),
+        (0.01, 0.04, True, True),
+        (-0.01, -0.04, False, False),
+        # From one side of it to the other.
+        (-0.2, 0.08, False, False),
+        (-0.2, 0.08, True, True),
+    ],
+)
+def test_effort_is_smooth_where_no_joint_swings_or_passes_its_reference(
+    travel: float, step: float, squared: bool, smooth: bool
+) -> None:
+    joints = steady(5.0, 0.0)
+    for i in (0, 5):
+        moved = joints.copy()
+        moved[i] = steady(travel, step)[i]
+        assert is_smooth(task_of(squared), moved, 1, 6) == smooth
+    assert is_smooth(task_of(squared), joints, 1, 6)
+
+
+def test_smoothness_is_looked_for_one_sample_beside_the_cell() -> None:
+    task = task_of(True)
+    for n in range(6):
+        joints = steady(5.0, 0.0)
+        joints[2, n:] += 0.2
+        # The change lies between samples n - 1 and n; cells look from k - 1 to k + 2.
+        smooth = [bool(is_smooth(task, joints, k, 6)) for k in range(5)]
+        assert smooth == [not (k - 1 < n <= k + 2) or n == 0 for k in range(5)]
+
+
+def test_a_valley_is_where_lines_from_outside_meet() -> None:
+    efforts = np.array([4.0, 2.0, 1.0, 2.5, 9.0])
+    assert valley(efforts, 1, 5) == pytest.approx(
+        2.0 - 2.0 * (2.0 - 1.0 - 1.5 + 2.0) / 3.5, abs=1.0
+    )
+    # Of a convex function it is a bound.
+    xs = np.array([-1.0, 0.0, 1.0, 2.0])
+    for least in (0.2, 0.5, 0.9):
+        bound = valley((xs - least) ** 2 + 3.0, 1, 4)
+        assert bound <= 3.0
+        assert bound == pytest.approx(-(_lines_meet(-((xs - least) ** 2) - 3.0)))
+    # At the arc's ends one line is enough, and without one the samples are.
+    assert valley(efforts, 0, 5) == 2.0
+    assert valley(np.array([2.0, 1.0, 4.0]), 0, 3) == -2.0
+    assert valley(np.array([4.0, 1.0, 2.0]), 1, 3) == -2.0
+    assert valley(np.array([1.0, 2.0, 5.0]), 1, 3) == 2.0
+    assert valley(np.array([5.0, 2.0, 1.0]), 0, 3) == 2.0
+
+
+def _lines_meet(values: Array) -> float:
+    before, left, right, after = values
+    rise, fall = left - before, right - after
+    return float(left + rise * (right - left + fall) / (rise + fall))
+
+
+def test_a_joint_swings_that_turns_by_half_in_half_a_cell() -> None:
+    joints = np.zeros((6, 4))
+    joints[4, 2:] = 0.51
+    assert swings_between(joints, 2)
+    assert not swings_between(joints, 1)
+    joints[4, 2:] = -0.51
+    assert swings_between(joints, 2)
+    joints[4, 2:] = 0.49
+    assert not swings_between(joints, 3)
+
+
+@pytest.mark.parametrize("offset", [-0.7, 0.0, 0.4])
+def test_a_kink_is_where_a_joint_passes_its_reference(
+    monkeypatch: pytest.MonkeyPatch, offset: float
+) -> None:
+    def curve(x: Array) -> Array:
+        return np.tanh(3 * (np.asarray(x) - offset)) + 0.2 * (np.asarray(x) - offset) ** 3
+
+    task = task_of()
+    told = Told(
+        monkeypatch, lambda x: np.full((6, 1), 9.0) + curve(x) - 9.0 + task.numbers[REFERENCE + 2]
+    )
+    for a, b in ((-1.0, 1.0), (1.0, -1.0), (offset - 1e-3, 1.0)):
+        told.count = 0
+        fa, fb = float(curve(np.array(a))), float(curve(np.array(b)))
+        found = interpreted(kink)(task, scratch_of(), 0, 2, a, fa, b, fb)
+        assert found == pytest.approx(offset, abs=1e-12)
+        assert told.count <= 20
+
+
+@pytest.mark.parametrize("least", [0.05, 0.4, 0.95, -0.5, 1.5])
+@pytest.mark.parametrize("power", [2, 4])
+def test_a_smooth_minimum_is_closed_in_on(
+    monkeypatch: pytest.MonkeyPatch, least: float, power: int
+) -> None:
+    """Or is an end, where effort does not fall from it."""
+    task = task_of()
+
+    def joints(x: Array) -> Array:
+        moved = np.repeat(task.numbers[REFERENCE : REFERENCE + 6, None], len(x), axis=1)
+        moved[0] += 2.0 + np.abs(x - least) ** power + 0.3 * np.sin(x - least) ** 2
+        return moved
+
+    told = Told(monkeypatch, joints)
+    where, effort = interpreted(smooth_minimum)(task, scratch_of(), 0, 0.0, 1.0)
+    expected = min(max(least, 0.0), 1.0)
+    assert where == pytest.approx(expected, abs=3e-6)
+    assert effort == pytest.approx(cost(task, joints(np.array([expected])))[0], abs=1e-11)
+    assert told.count <= (4 if expected != least else 30)
+
+
+@pytest.mark.parametrize("name", MOVES)
+@pytest.mark.parametrize("squared", [False, True])
+def test_a_cell_is_refined_to_its_least(
+    monkeypatch: pytest.MonkeyPatch, name: str, squared: bool
+) -> None:
+    task = task_of(squared)
+    told = Told(monkeypatch, MOVES[name])
+    for low, high in ((0.1, 0.13), (0.3, 0.33), (-0.8, -0.77), (0.305, 0.32)):
+        angle, effort = interpreted(refine_cell)(task, scratch_of(), 0, low, high, math.inf)
+        assert effort <= dense(task, MOVES[name], low, high) + 1e-11
+        assert low <= angle <= high
+        unbeaten = interpreted(refine_cell)(task, scratch_of(), 0, low, high, effort)
+        assert math.isnan(unbeaten[0])
+        assert unbeaten[1] == effort
+    assert told.count < 3000
