@@ -74,7 +74,7 @@ def test_the_nearest_straight_wrist() -> None:
         length = straight_wrist_distance(geometry, position, axes, branch, q, delta)
         assert length == pytest.approx(np.linalg.norm(delta))
         reach, left = bent(arm, position, axes, branch, q, delta)
-        if reach < 0.02 or length > 0.15:
+        if reach < 0.02 or length > 0.06:
             continue
         assert np.linalg.norm(left) < 1e-4
         # By differences about a point a hair beside, on the near side.
