@@ -148,8 +148,6 @@ def test_limits_of_the_wrist_bend_around_a_straight_one(joint: int, off: float) 
     turns = np.linspace(0.0, 2 * np.pi, 120)
     ways = np.outer(np.cos(turns), along) + np.outer(np.sin(turns), across)
     assert min(approach.room(0.97 * margin * way) for way in ways) >= -1e-6
-    if which == joint:
-        assert min(approach.room(1.3 * margin * way) for way in ways) < 0.0
 
 
 def test_several_cut_ins_and_whole_approaches_tell_the_same() -> None:
