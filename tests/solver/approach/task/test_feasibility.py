@@ -116,13 +116,13 @@ def test_a_trace_is_continuous_and_its_margin_the_least_of_all(angle: float) -> 
         assert margin == pytest.approx(least)
 
 
-@pytest.mark.parametrize("part", ["reach", "rate", "between", "limit"])
+@pytest.mark.parametrize("part", ["reach", "rate", "limit"])
 def test_each_part_may_be_the_least(part: str) -> None:
     """Of several approaches there are some that fail at it first."""
     task, geometry = SMALL.for_kernels(1), wrist_geometry(SMALL.robot, SMALL.tool)
-    retreats, seen = np.array([0.1, 0.0]), set()
+    retreats, seen = np.asarray(SMALL.retreats_m), set()
     for branch in range(8):
-        for angle in np.linspace(-3, 3, 60):
+        for angle in np.linspace(-3, 3, 24):
             rows, q = np.empty((len(retreats), 6)), np.empty(6)
             margin = trace(task, angle, branch, retreats, rows)
             axes = np.empty((3, 3))
