@@ -329,5 +329,7 @@ def test_segments_cover_the_times_without_a_gap(spoil: Spoil) -> None:
 
 @pytest.mark.parametrize("count", [0, 1])
 def test_a_motion_of_no_or_one_row_is_none(count: int) -> None:
-    short = Trajectory(TIMES[:count], JOINTS[:count], NAMED)
-    assert shapes(short)["trajectory_times"] == 1.0
+    nothing = tuple(Segment(name, 0.0, 0.0) for name in SEGMENTS)
+    for named in (NAMED, nothing):
+        short = Trajectory(TIMES[:count], JOINTS[:count], named)
+        assert shapes(short)["trajectory_times"] == 1.0
