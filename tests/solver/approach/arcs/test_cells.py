@@ -43,9 +43,10 @@ def test_twelfths_of_thirty_degrees_are_cells() -> None:
     """Five degrees each; a node beyond each side of the turn."""
     assert ARC_CELLS == 72
     assert ARC_NODES == 75
-    assert [state.name for state in sorted(CellState)] == [
-        "DEAD", "FULL", "CROSSED", "EXTREME", "EDGE",
-    ]  # fmt: skip
+    names = ["DEAD", "FULL", "CROSSED", "EXTREME", "EDGE"]
+    assert {state.name: int(state) for state in CellState} == dict(
+        zip(names, range(5), strict=True)
+    )
 
 
 @pytest.mark.parametrize("top", [-0.9, 0.0, 0.2, 0.5, 0.8, 1.0, 1.7])

@@ -197,6 +197,32 @@ def test_the_jump_is_the_least_room_of_rates_in_rows_and_between(task: ApproachT
     assert False in seen or task is TASKS["askew"]
 
 
+@pytest.mark.parametrize("wrist", [0, 1])
+@pytest.mark.parametrize("row", [0, 7, 14])
+@pytest.mark.parametrize("swing", [2.9, -3.0])
+def test_a_joint_that_swings_between_two_rows_has_jumped(
+    task: ApproachTask, wrist: int, row: int, swing: float
+) -> None:
+    """Slow in both rows: joints 4 and 6 beside a straight wrist, joint 1 at the waist's axis."""
+    geometry = wrist_geometry(task.robot, task.tool)
+    side, angle, branch = feasible(task)[10]
+    for joint in (0, 3, 5):
+        turns = turns_of(task, side, angle, branch // 2)
+        turns[:14] = turns[:14, 15:16]
+        cos, sin = math.cos(swing), math.sin(swing)
+        c, s = turns[2 * joint].copy(), turns[2 * joint + 1].copy()
+        turns[2 * joint, : row + 1] = (cos * c - sin * s)[: row + 1]
+        turns[2 * joint + 1, : row + 1] = (sin * c + cos * s)[: row + 1]
+        joints, count = np.empty((6, 16)), len(task.retreats_m)
+        joints_of_turns(task.packed(side), turns, count, wrist, joints)
+        rows, steps = joints.T, -np.diff(task.retreats_m)
+        between = between_rate_room(geometry, rows[row], rows[row + 1], steps[row])
+        least = min(between, *(posture_rate_room(geometry, q) for q in rows))
+        found = jump_margin(task.packed(side), turns, wrist)
+        assert found == pytest.approx(least, abs=1e-9) or found == -1.0
+        assert between < 0.0
+
+
 def two_columns(task: ApproachTask, i: int, wrist: int, left: float, right: float) -> Array:
     """Turns in which one joint is so far from the middle of its limits."""
     sign_cos = -1.0 if wrist and i in (3, 5) else 1.0

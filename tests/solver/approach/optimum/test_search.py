@@ -354,3 +354,23 @@ def test_a_cell_is_refined_to_its_least(
         assert math.isnan(unbeaten[0])
         assert unbeaten[1] == effort
     assert told.count < 3000
+
+
+@pytest.mark.parametrize("kinks", [(0.311, 0.3177), (0.3177, 0.311), (0.3049, 0.3211)])
+def test_a_least_in_a_kink_is_found_exactly(
+    monkeypatch: pytest.MonkeyPatch, kinks: tuple[float, float]
+) -> None:
+    """Two joints pass their references in one cell; between them effort falls or rises."""
+    task = task_of()
+
+    def joints(x: Array) -> Array:
+        moved = np.repeat(task.numbers[REFERENCE : REFERENCE + 6, None], len(x), axis=1)
+        moved[1] += 0.9 * np.sin(x - kinks[0])
+        moved[5] -= 1.1 * np.sin(x - kinks[1])
+        return moved
+
+    Told(monkeypatch, joints)
+    angle, effort = interpreted(refine_cell)(task, scratch_of(), 0, 0.3, 0.33, math.inf)
+    # The heavier joint stands where its reference is.
+    assert angle == pytest.approx(kinks[1], abs=1e-12)
+    assert effort == pytest.approx(2 * 0.9 * abs(math.sin(kinks[1] - kinks[0])), abs=1e-12)

@@ -19,7 +19,6 @@ from solver.approach.refusal.nearest_change import (
     nearest_angle,
     nearest_displacement,
 )
-from solver.approach.refusal.offered import offer_holds, on_an_arc
 from solver.approach.task.frame import approach_frame
 from solver.problem.solution import Nearest, Reason
 from solver.tolerances import JOINT_RATE_RAD_M
@@ -185,24 +184,3 @@ def test_an_angle_is_on_an_arc_of_its_own_branch_whatever_its_turn() -> None:
             assert _on_an_arc(TASK, middle + 2 * math.pi * turn, 1, arc.branch)
         assert not _on_an_arc(TASK, middle, -1, arc.branch)
         assert not _on_an_arc(TASK, arc.upper_rad + 1e-6, 1, arc.branch)
-        packed = TASK.packed(1)
-        spots = [middle, arc.lower_rad - 1e-6, arc.lower_rad + 1e-6, arc.upper_rad + 1e-6]
-        turned = [math.remainder(spot, 2 * math.pi) for spot in spots]
-        assert [bool(on_an_arc(packed, arc.branch, one)) for one in turned] == [
-            True, False, True, False,
-        ]  # fmt: skip
-
-
-def test_an_offer_is_looked_at_where_it_is_displaced_to() -> None:
-    moved = displaced(TASK, (0.004, -0.003, 0.002))
-    turn = TASK.robot.mount[:3, :3].T
-    kernels, packed = TASK.for_kernels(1), TASK.packed(1)
-    before = kernels.position.copy(), packed.numbers.copy()
-    for angle in np.linspace(-1.0, 1.0, 7):
-        x = np.append(turn @ np.array([0.004, -0.003, 0.002]), angle)
-        inside, closer = offer_holds(kernels, packed, 2, x)
-        own = _same_direction(TASK, tuple(moved.target.position_m), float(angle))
-        assert inside == _on_an_arc(moved, own, 1, 2)
-        assert closer in (True, False)
-    assert np.array_equal(kernels.position, before[0])
-    assert np.array_equal(packed.numbers, before[1])

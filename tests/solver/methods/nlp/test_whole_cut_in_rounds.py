@@ -155,7 +155,9 @@ def rounds(monkeypatch: pytest.MonkeyPatch) -> Rounds:
 
 def test_a_programme_that_fails_is_told(rounds: Rounds) -> None:
     rounds.success = False
-    assert rounds.solve() == ProgrammeAnswer("told", 10, 1)
+    answer = rounds.solve()
+    assert answer == ProgrammeAnswer("told", 10, 1)
+    assert (answer.branch, answer.thinning) == (0, None)
 
 
 def test_where_all_rows_hold_it_is_solved(rounds: Rounds) -> None:
