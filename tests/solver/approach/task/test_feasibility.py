@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from solver import Options, Problem, Target, load_robot
+from solver.approach.task import feasibility
 from solver.approach.task.constraints import JUMP, LIMITS, Constraint
 from solver.approach.task.feasibility import (
     choose_packed_turns,
@@ -35,6 +36,7 @@ from solver.kinematics.straight_rates import (
 )
 from solver.robots.rigid import inverse
 from solver.tolerances import JOINT_RATE_RAD_M
+from tests.solver.interpreted import interpret, interpreted
 from tests.solver.methods.synthetic import small_task
 
 SMALL = small_task(2, symmetric_tool=True, joint_weights=(1, 2, 3, 4, 5, 6))
@@ -139,6 +141,23 @@ def test_each_part_may_be_the_least(part: str) -> None:
             assert margin == pytest.approx(min(parts.values()))
             seen.add(min(parts, key=lambda name: parts[name]))
     assert part in seen
+
+
+def test_between_each_two_rows_rates_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[np.ndarray, np.ndarray, float]] = []
+
+    def between(geometry: object, before: np.ndarray, after: np.ndarray, spacing: float) -> float:
+        asked.append((before.copy(), after.copy(), spacing))
+        return -0.25 if len(asked) == 2 else 0.5
+
+    interpret(monkeypatch, feasibility, between_rate_room=between)
+    task, retreats = SMALL.for_kernels(1), np.array([0.03, 0.02, 0.005, 0.0])
+    rows = np.empty((4, 6))
+    assert interpreted(trace)(task, 0.2, 2, retreats, rows) == -0.25
+    assert [one[2] for one in asked] == pytest.approx([0.005, 0.015, 0.01])
+    for k, (before, after, _) in enumerate(asked):
+        assert before == pytest.approx(rows[2 - k])
+        assert after == pytest.approx(rows[3 - k])
 
 
 def test_the_fastest_joint_of_a_cut_in_and_its_row() -> None:

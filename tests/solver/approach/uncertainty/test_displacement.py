@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from solver.approach.task.constraints import LIMITS, REACH
+from solver.approach.uncertainty import displacement
 from solver.approach.uncertainty.displacement import (
     displacement_margin,
+    other_rows,
     rows_displacement_margin,
     rows_displacement_margins,
 )
@@ -20,6 +22,7 @@ from solver.approach.uncertainty.robustness import (
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
 from solver.kinematics.forward import forward_kinematics
 from solver.robots.rigid import inverse
+from tests.solver.interpreted import interpret, interpreted
 from tests.solver.methods.synthetic import small_task
 
 PLACES = [(0, 0.1), (2, 0.2), (2, 0.45), (3, -0.9), (4, 0.0), (1, 0.4)]
@@ -176,3 +179,37 @@ def test_several_cut_ins_and_whole_approaches_tell_the_same() -> None:
     # One that is not feasible bears nothing.
     assert displacement_margin(kernels, 2.5, 2, rows) == (0.0, 0, 0)
     assert bears_uncertainty(task, 0.2, 1, 2)
+
+
+def test_other_rows_are_asked_until_none_breaks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At each displacement that is found the others are looked at anew."""
+    rows = np.repeat(np.arange(3.0)[:, None], 6, axis=1)
+    # By row and displacement: a joint beyond its limits, or the reach.
+    breaks = {(1, 1.0): (2, 11.0), (2, 2.0): (REACH, -0.1), (0, 3.0): (4, -10.5)}
+    lengths = {(1, 2): (4.0, 2.0), (2, REACH): (3.0, 3.0), (0, 4): (3.5, 9.0)}
+    asked: list[tuple[int, int, float]] = []
+
+    def stand_in(g: object, position: object, delta: np.ndarray, axes: object, branch: int,
+                 near: np.ndarray, at: np.ndarray) -> float:  # fmt: skip
+        at[:] = 0.0
+        joint, value = breaks.get((int(near[0]), float(delta[0])), (0, 0.0))
+        if joint == REACH:
+            return value
+        at[joint] = value
+        return 1.0
+
+    def distance(g: object, position: object, axes: object, branch: int, q: np.ndarray,
+                 kind: int, limit: float, delta: np.ndarray) -> float:  # fmt: skip
+        assert not delta.any()
+        asked.append((int(q[0]), kind, limit))
+        length, delta[0] = lengths[int(q[0]), kind]
+        return length
+
+    interpret(monkeypatch, displacement, shifted=stand_in, limit_distance=distance)
+    low, high, start = np.full(6, -10.0), np.full(6, 10.0), np.array([1.0, 0.0, 0.0])
+    found = interpreted(other_rows)(
+        None, low, high, np.eye(4), np.zeros(3), 2, rows, 5.0, 0, 0, start
+    )
+    # The last one is no nearer, so it is left as it was.
+    assert found == (3.0, 2, REACH)
+    assert asked == [(1, 2, 10.0), (2, REACH, 0.0), (0, 4, -10.0)]
