@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from solver.approach.arcs.arcs import task_arcs
 from solver.approach.bounds.bounding import (
     cell_bound,
     examine,
@@ -209,6 +210,28 @@ def test_a_cell_with_a_feasible_approach_is_never_closed(off: float) -> None:
         # One that cannot be below what is known is not looked at.
         kept = examine(TASK, low, high, BRANCH, 1e-3, 1e-7, rows, work)
         assert kept == (bound_alone, 1e-3)
+
+
+def test_a_cell_whose_middle_is_not_feasible_is_kept_where_a_part_of_it_is() -> None:
+    """Across the ends of its arcs; and beyond them cells are closed."""
+    kept = 0
+    for arc in task_arcs(SMALL):
+        for end, inwards in ((arc.lower_rad, 1.0), (arc.upper_rad, -1.0)):
+            for width in (1e-5, 1e-3):
+                inside, outside = end + 0.2 * inwards * width, end - 0.8 * inwards * width
+                rows, work = np.empty((ROWS, 6)), np.empty((4, 6, 2))
+                low, high = min(inside, outside), max(inside, outside)
+                margin, _ = evaluate(TASK, (low + high) / 2, arc.branch, rows)
+                _, effort = evaluate(TASK, inside, arc.branch, rows)
+                bound, known = examine(TASK, low, high, arc.branch, math.inf, 1e-7, rows, work)
+                assert bound <= effort
+                kept += margin < 0.0 and known == math.inf
+                far = end - 3.0 * inwards * width
+                away = examine(
+                    TASK, far - width, far + width, arc.branch, math.inf, 1e-7, rows, work
+                )
+                assert away[1] == math.inf or away[1] >= BEST.effort - 1e-9
+    assert kept >= 4
 
 
 def test_a_proof_ends_at_the_least_effort() -> None:

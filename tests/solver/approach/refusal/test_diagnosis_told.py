@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver import Arc
-from solver.approach.arcs.arcs import task_arcs
+from solver.approach.arcs.arcs import sample_angles_of, task_arcs
 from solver.approach.refusal import diagnosis, nearest_change
 from solver.approach.refusal.closest import Stage
 from solver.approach.refusal.diagnosis import _stage_reason, diagnose
@@ -184,3 +184,17 @@ def test_an_angle_is_on_an_arc_of_its_own_branch_whatever_its_turn() -> None:
             assert _on_an_arc(TASK, middle + 2 * math.pi * turn, 1, arc.branch)
         assert not _on_an_arc(TASK, middle, -1, arc.branch)
         assert not _on_an_arc(TASK, arc.upper_rad + 1e-6, 1, arc.branch)
+
+
+def test_of_angles_tried_those_that_are_feasible_are_spots() -> None:
+    task, tried = small_task(2, symmetric_tool=True), np.array([0.2, 2.5, 0.4])
+    spots = diagnosis._tried_spots(task, tried)
+    expected = []
+    for side in (1, -1):
+        margins, _ = sample_angles_of(task, side, tried)
+        places = [(branch, k) for branch in range(8) for k in range(3)]
+        expected += [
+            (side, branch, float(tried[k])) for branch, k in places if margins[branch, k] >= 0.0
+        ]
+    assert [(spot.tool_side, spot.branch, spot.angle_rad) for spot in spots] == expected
+    assert len(expected) >= 2

@@ -131,6 +131,10 @@ def test_a_straight_wrist_stands_before_limits_of_joint_five(wide: bool) -> None
         assert found[UPPER_5] != pytest.approx(plain[1])
         ratio = found[UPPER_5] / found[LOWER_5]
         assert ratio == pytest.approx((above - q[4]) / (q[4] - below))
+        # The way there is normal to joint 4's gradient.
+        fifth, fourth = rates[4, :3], rates[3, :3]
+        across = fifth - (fifth @ fourth) / (fourth @ fourth) * fourth
+        assert found[LOWER_5] == pytest.approx((q[4] - below) / np.linalg.norm(across))
     else:
         assert (found[LOWER_5], found[UPPER_5]) == pytest.approx(plain)
     exactly = lower.copy()
