@@ -12,7 +12,7 @@ def problem_of(**options: object) -> Problem:
     return data_set_3(ROBOT, **{"position_margin_m": 0.0, **options})
 
 
-def small_task(index: int = 0, **options: object) -> ApproachTask:
+def small_task(index: int = 0, /, **options: object) -> ApproachTask:
     """One of the targets, seen from where the arm starts."""
     problem = problem_of(**options)
     return approach_task(problem, DATA_SET_3[index], problem.start)

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
+from solver.kinematics.families.family import Rail
 from solver.kinematics.families.on_rail import split_rail
 from solver.methods import any_arm
 from solver.methods.any_arm import not_applicable, on_any_arm, over_rail
@@ -17,8 +19,9 @@ from tests.solver.methods.on_rail import TARGETS, task_of
 from tests.solver.methods.synthetic import small_task
 
 TASK = task_of(TARGETS[0])
-RAIL = split_rail(TASK.robot)
-assert RAIL is not None
+_FOUND = split_rail(TASK.robot)
+assert _FOUND is not None
+RAIL: Rail = _FOUND
 PLACES = [float(place) for place in rail_positions(TASK)]
 
 
@@ -115,7 +118,8 @@ def test_an_arm_with_a_closed_form_is_solved_as_it_is() -> None:
 
 def test_an_arm_on_a_rail_is_solved_over_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(any_arm, "over_rail", lambda task, rail, solve: (task, rail, solve))
-    assert on_any_arm(not_applicable)(TASK) == (TASK, RAIL, not_applicable)
+    given: Any = on_any_arm(not_applicable)(TASK)
+    assert given == (TASK, RAIL, not_applicable)
 
 
 def test_an_arm_with_neither_is_told_so() -> None:

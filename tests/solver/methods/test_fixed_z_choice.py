@@ -114,7 +114,7 @@ def test_the_forks_point_along_x_and_the_angle_is_that_before_the_swing(lean: fl
     task = replace(task, target=replace(task.target, position_m=(0.23, 0.05, 0.35)))
     answer = solve_fixed_z(task)
     assert isinstance(answer, Candidate)
-    pose = forward_kinematics(task.robot, task.tool, answer.thinning_joints)
+    pose = forward_kinematics(task.robot, task.tool, np.asarray(answer.thinning_joints))
     assert pose[:3, 2] == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
     assert pose[:3, 1] == pytest.approx([0.0, 1.0, 0.0], abs=1e-9)
     swing = rotation(np.array([0.0, 0.0, lean]))

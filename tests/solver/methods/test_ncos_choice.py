@@ -78,7 +78,7 @@ def test_the_answer_is_on_the_start_s_arc(monkeypatch: pytest.MonkeyPatch, end: 
     edge = getattr(best.arc, end)
     beyond = edge + (0.3 if end == "upper_rad" else -0.3)
     ends_at(monkeypatch, beyond)
-    monkeypatch.setattr(ncos.Coupling, "cost", lambda self, candidate: 0.0)
+    monkeypatch.setattr(Coupling, "cost", lambda self, candidate: 0.0)
     assert improved(TASK, best).approach_angle_rad == pytest.approx(edge)
 
 
@@ -104,7 +104,12 @@ def test_what_bears_less_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     best = start_of()
     asked: list[Any] = []
     ends_at(monkeypatch, best.angle_rad)
-    monkeypatch.setattr(ncos, "first_at_level", lambda task, places: asked.append(places) or 1)
+
+    def first(task: object, places: Any) -> int:
+        asked.append(places)
+        return 1
+
+    monkeypatch.setattr(ncos, "first_at_level", first)
     start = replace(best, angle_rad=best.angle_rad + 0.1)
     assert improved(TASK, start).status == "solved_warm_start_as_good"
     found, kept = asked[0]
@@ -116,7 +121,12 @@ def test_what_bears_less_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_places_without_a_branch_count_as_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
-    monkeypatch.setattr(ncos, "first_at_level", lambda task, places: asked.append(places) or 0)
+
+    def first(task: object, places: Any) -> int:
+        asked.append(places)
+        return 0
+
+    monkeypatch.setattr(ncos, "first_at_level", first)
     one = Candidate(0.25, 1, None, (), 1.0, 1, "")
     two = Candidate(0.5, -1, 6, (), 1.0, 1, "")
     assert not _bears_less(TASK, one, two)
@@ -143,9 +153,11 @@ def test_in_a_chain_relaxed_stops_go_another_way(monkeypatch: pytest.MonkeyPatch
     best = start_of()
     monkeypatch.setattr(ncos, "improved", lambda *given: given)
     monkeypatch.setattr(ncos, "between_neighbours", lambda *given: given)
-    assert improved_in_chain(TASK, best, FOLLOWING) == (TASK, best, FOLLOWING)
+    plain: Any = improved_in_chain(TASK, best, FOLLOWING)
+    assert plain == (TASK, best, FOLLOWING)
     relaxed = small_task(0, strike_zone_m=0.02)
-    task, kept, coupling = improved_in_chain(relaxed, best, FOLLOWING)  # type: ignore[misc]
+    given: Any = improved_in_chain(relaxed, best, FOLLOWING)
+    task, kept, coupling = given
     assert task is relaxed
     assert kept == at(relaxed, best, best.angle_rad)
     assert coupling == Coupling(relaxed, FOLLOWING)
@@ -155,13 +167,14 @@ def test_each_family_of_arms_goes_its_way(monkeypatch: pytest.MonkeyPatch) -> No
     reason = Reason("out_of_reach", "")
     for name in ("solve_on_rail", "solve_other_arm", "solve_relaxed", "diagnose", "improved"):
         monkeypatch.setattr(ncos, name, lambda *given, name=name: (name, given[0]))
+    solve: Any = solve_ncos
     rail = task_of(TARGETS[0])
-    assert solve_ncos(rail) == ("solve_on_rail", rail)
+    assert solve(rail) == ("solve_on_rail", rail)
     other = replace(TASK, robot=ur5(), tool=ur5().tools[0])
-    assert solve_ncos(other) == ("solve_other_arm", other)
+    assert solve(other) == ("solve_other_arm", other)
     relaxed = small_task(0, strike_zone_m=0.02)
-    assert solve_ncos(relaxed) == ("solve_relaxed", relaxed)
+    assert solve(relaxed) == ("solve_relaxed", relaxed)
     monkeypatch.setattr(ncos, "best_on_arcs", lambda _: None)
-    assert solve_ncos(TASK) == ("diagnose", TASK)
+    assert solve(TASK) == ("diagnose", TASK)
     monkeypatch.setattr(ncos, "best_on_arcs", lambda _: reason)
-    assert solve_ncos(TASK) == ("improved", TASK)
+    assert solve(TASK) == ("improved", TASK)

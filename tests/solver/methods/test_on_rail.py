@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from solver.approach.task.candidate import Candidate
 from solver.approach.task.task import ApproachTask
+from solver.kinematics.families.family import Rail
 from solver.kinematics.families.on_rail import split_rail
 from solver.kinematics.forward import forward_kinematics
 from solver.methods import on_rail
@@ -19,8 +21,9 @@ from solver.problem.solution import Reason
 from tests.solver.methods.on_rail import TARGETS, task_of
 
 TASK = task_of(TARGETS[0])
-RAIL = split_rail(TASK.robot)
-assert RAIL is not None
+_FOUND = split_rail(TASK.robot)
+assert _FOUND is not None
+RAIL: Rail = _FOUND
 KEPT = 0.2
 
 
@@ -105,7 +108,8 @@ def test_where_no_position_has_an_approach_the_rail_s_reason_is_told(
 ) -> None:
     monkeypatch.setattr(on_rail, "cheapest_position", lambda *_: None)
     monkeypatch.setattr(on_rail, "over_rail", lambda task, rail, solve: (task, rail, solve))
-    assert solve_on_rail(TASK, RAIL) == (TASK, RAIL, solve_ssas)
+    given: Any = solve_on_rail(TASK, RAIL)
+    assert given == (TASK, RAIL, solve_ssas)
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from solver.approach.task.task import ApproachTask
+from solver.kinematics.families.family import Rail
 from solver.kinematics.families.on_rail import split_rail
 from solver.methods import slide
 from solver.methods.rail import rail_effort, rail_positions
@@ -15,8 +16,9 @@ from solver.methods.slide import _Slide, cheapest_position
 from tests.solver.methods.on_rail import TARGETS, task_of
 
 TASK = task_of(TARGETS[0])
-RAIL = split_rail(TASK.robot)
-assert RAIL is not None
+_FOUND = split_rail(TASK.robot)
+assert _FOUND is not None
+RAIL: Rail = _FOUND
 GRID = sorted(float(place) for place in rail_positions(TASK))
 STEP = max(high - low for low, high in itertools.pairwise(GRID))
 LOWER, UPPER = float(TASK.lower[0]), float(TASK.upper[0])
@@ -120,4 +122,4 @@ def test_steps_are_halved_and_the_better_place_is_kept(monkeypatch: pytest.Monke
     monkeypatch.setattr(of, "effort", effort)
     place, least = of.lowest_around(0.0, 0.0512, 0.08, 0.01)
     assert asked == pytest.approx([-0.04, 0.04, 0.02, 0.06, 0.05, 0.07])
-    assert (place, least) == (pytest.approx(0.05), pytest.approx(0.0012))
+    assert [place, least] == pytest.approx([0.05, 0.0012])

@@ -289,9 +289,12 @@ def test_all_open_cells_of_all_branches_are_looked_at(monkeypatch: pytest.Monkey
     closed: list[tuple[int, int]] = []
     monkeypatch.setattr(search, "open_up", opened)
     monkeypatch.setattr(search, "cell_pieces", pieces)
-    monkeypatch.setattr(
-        search, "close_turn", lambda arcs, start, count: closed.append((start, count)) or count
-    )
+
+    def close(arcs: object, start: int, count: int) -> int:
+        closed.append((start, count))
+        return count
+
+    monkeypatch.setattr(search, "close_turn", close)
     assert interpreted(find_arcs)(TASK, scratch, np.zeros((MOST_ARCS, 5))) == 8
     assert looked == [(0, 0, 71, 0, 0), (1, 1, 0, 2, 2), (3, 1, 4, 4, 4), (3, 1, 9, 4, 6)]
     assert closed == [(0, 2), (2, 2), (2, 2), (2, 4), (4, 4), (4, 4), (4, 4), (4, 8)]

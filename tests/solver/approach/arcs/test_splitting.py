@@ -119,7 +119,7 @@ class Settled:
         )
         margins[:] = self.margins.get(round(float(self.scratch.cell_angles[slot]), 9), margins)
 
-    def _path_state(self, task: object, wrist: int, width: float, *_: object) -> Any:
+    def _path_state(self, task: object, wrist: int, width: float, *others: object) -> Any:
         (a, exact), (b, _), (outer, near), (beyond, _) = self.known[-4:]
         assert (exact, near) == (0.0, 1e-12)
         assert (outer, beyond) == pytest.approx((a - width, b + width))
@@ -279,7 +279,7 @@ def test_the_narrowest_cells_are_given_up_but_for_slivers_between_rates(
 
 def sliver(
     monkeypatch: pytest.MonkeyPatch, room: Callable[[float], float], others: float = 1.0
-) -> list[Piece]:
+) -> Any:
     """Of rates that are slow enough around 0.4 alone; the others' least margin there."""
     arcs = np.zeros((MOST_ARCS, ARC_COLUMNS))
     scratch = SimpleNamespace(work=None, work_margins=np.full(CONSTRAINTS, others))

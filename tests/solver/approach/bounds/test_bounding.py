@@ -20,7 +20,7 @@ from solver.approach.bounds.bounding import (
     worst_row,
 )
 from solver.approach.bounds.enclosure import enclosure, half_length
-from solver.approach.optimum.on_arcs import best_on_arcs
+from solver.approach.optimum.on_arcs import ArcOptimum, best_on_arcs
 from solver.approach.task.feasibility import evaluate, trace
 from tests.solver.methods.synthetic import small_task
 
@@ -29,8 +29,9 @@ TASK = SMALL.for_kernels(1)
 ROWS = len(TASK.retreats)
 TURN = 2 * math.pi
 BRANCH = 2
-BEST = best_on_arcs(SMALL)
-assert BEST is not None
+_FOUND = best_on_arcs(SMALL)
+assert _FOUND is not None
+BEST: ArcOptimum = _FOUND
 
 
 def with_limits(low: float, high: float, reference: float = 0.0, squared: bool = False) -> Any:

@@ -58,14 +58,14 @@ def test_a_least_is_closed_in_on(at: float) -> None:
     assert value == pytest.approx(-0.25, abs=1e-8)
 
 
-def told(monkeypatch: pytest.MonkeyPatch, suspicious: bool = True, **curves: Curve) -> list[str]:
+def told(monkeypatch: pytest.MonkeyPatch, /, suspicious: Any = True, **curves: Any) -> list[str]:
     """Measures by their names; those that are not told are far from broken."""
     asked: list[str] = []
 
     def measured(name: str) -> Any:
         def measure(self: Any, retreats: np.ndarray, rows: np.ndarray) -> np.ndarray:
             asked.append(name)
-            return curves.get(name, lambda x: np.full(len(x), 1.0))(retreats)
+            return curves[name](retreats) if name in curves else np.ones(len(retreats))
 
         return measure
 

@@ -67,10 +67,12 @@ class Told:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.tried: list[list[float]] = []
         self.angles: list[float] = []
-        self.reached, self.holding = True, lambda q: True
-        interpret(
-            monkeypatch, module, lead_back=self._lead, holds=lambda c, f, r, q: self.holding(q)
-        )
+        self.reached = True
+        self.holding: Any = lambda q: True
+        interpret(monkeypatch, module, lead_back=self._lead, holds=self._holds)
+
+    def _holds(self, chain: Any, family: Any, retreats: Any, q: np.ndarray) -> Any:
+        return self.holding(q)
 
     def _lead(self, chain: Any, cell: PoseFamily, angle: float, q: np.ndarray) -> float:
         self.tried.append(q.tolist())

@@ -223,7 +223,8 @@ def test_what_effort_is_at_least_between_two_samples(squared: bool) -> None:
 
 def steady(travel: float, step: float) -> Array:
     """Joints so far from their references, that turn so far from sample to sample."""
-    return task_of().numbers[REFERENCE : REFERENCE + 6, None] + travel + step * np.arange(6.0)
+    start = task_of().numbers[REFERENCE : REFERENCE + 6, None]
+    return np.asarray(start + travel + step * np.arange(6.0))
 
 
 @pytest.mark.parametrize(

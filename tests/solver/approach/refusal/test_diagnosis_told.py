@@ -88,7 +88,7 @@ def test_the_closest_of_both_tool_sides_is_told(monkeypatch: pytest.MonkeyPatch)
     task = small_task(2, symmetric_tool=True)
     for failures in ({1: FAR, -1: NEAR}, {1: NEAR, -1: FAR}):
         asked = told(monkeypatch, failures)
-        reason = diagnose(task)
+        reason: Any = diagnose(task)
         assert (reason.code, reason.joint, reason.nearest) == ("joint_limit", NAME, "displaced")
         assert asked == [(1, 90, True), (-1, 90, True)]
     asked = told(monkeypatch, {1: FAR, -1: (*FAR[:1], -0.05, *FAR[2:])})
@@ -102,7 +102,7 @@ def test_where_there_are_arcs_beside_the_angles_tried_the_nearest_is_offered(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     told(monkeypatch, {1: FAR, -1: NEAR}, (Arc(1, 2, 0.1, 0.2),))
-    reason = diagnose(small_task(2, symmetric_tool=True), np.array([0.5]))
+    reason: Any = diagnose(small_task(2, symmetric_tool=True), np.array([0.5]))
     assert reason.nearest == ("angle", 1)
 
 
@@ -156,7 +156,7 @@ def test_spares_are_given_in_turn_until_one_verifies(monkeypatch: pytest.MonkeyP
     assert found.approach_angle_rad == 0.2
     assert asked == [0.0, 1e-4, 3e-4]
     asked.clear()
-    offers[2] = None  # type: ignore[call-overload]
+    offers[2] = None
     assert nearest_displacement(TASK) is None
     assert len(asked) == 4
 

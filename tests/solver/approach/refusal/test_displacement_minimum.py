@@ -139,7 +139,7 @@ def test_rates_get_more_and_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> No
     """Of a corner that no step gains on."""
 
     def corner(x: np.ndarray) -> float:
-        return 0.03 - abs(x[0] - 0.05) - 40 * abs(x[1] - 0.3 * x[0])
+        return float(0.03 - abs(x[0] - 0.05) - 40 * abs(x[1] - 0.3 * x[0]))
 
     plain = Told(monkeypatch, corner)
     plain.run([0.4, -0.3, 0.0, 0.0])

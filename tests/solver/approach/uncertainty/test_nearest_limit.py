@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from solver import Robot
 from solver.approach.task.constraints import LIMITS, REACH
 from solver.approach.uncertainty.nearest_limit import (
     LOWER_5,
@@ -18,6 +19,7 @@ from solver.approach.uncertainty.nearest_limit import (
 )
 from solver.approach.uncertainty.sensitivity import joint_rates, shifted
 from solver.kinematics.spherical_wrist import wrist_geometry
+from solver.robots.model import Array
 from tests.solver.approach.uncertainty.test_sensitivity_shifts import ARMS, placed
 
 CASES = [(arm, seed) for arm in ARMS for seed in (0, 3)]
@@ -55,7 +57,9 @@ def test_the_nearest_shift_that_meets_a_limit(arm, seed: int, kind: int, off: fl
     assert across == pytest.approx(np.zeros(2), abs=2e-3 * length)
 
 
-def bent(arm, position, axes, branch, q, shift):  # type: ignore[no-untyped-def]
+def bent(
+    arm: Robot, position: Array, axes: Array, branch: int, q: Array, shift: Array
+) -> tuple[float, Array]:
     """What is zero where the wrist is straight."""
     geometry, at = wrist_geometry(arm, arm.tools[0]), np.empty(6)
     reach = shifted(geometry, position, shift, axes, branch, q, at)

@@ -9,7 +9,7 @@ import qpsolvers
 from solver.methods.nlp.quadratic import QP_SOLVERS, solve_quadratic
 
 
-def drawn(seed: int) -> tuple[np.ndarray, ...]:
+def drawn(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(4, 4))
     g = rng.normal(size=(7, 4))

@@ -113,7 +113,8 @@ def test_multipliers_are_guessed_once_as_if_no_limit_held(monkeypatch: pytest.Mo
         monkeypatch, lambda x: x[0] ** 3, lambda x: ca.vertcat(x[0] + 2 * x[1] - 1), (0.5, 0.25),
         (-2.0, 2.0), (0.7, 0.2), (0.9, 0.1),
     )  # fmt: skip
-    state, guesses = search(instance), []
+    state = search(instance)
+    guesses: list[Any] = []
     guess = state._guess_multipliers
     monkeypatch.setattr(state, "_guess_multipliers", lambda: guesses.append(guess()))
     guess()
@@ -215,7 +216,8 @@ def test_where_no_share_of_a_step_gains_the_equations_are_repaired(
 
 def test_twenty_shares_of_a_step_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     for start in ((1.0, 0.0), (1.0, 0.5)):
-        state, tried = search(toy(monkeypatch, lambda x: (x[1] - 1) ** 2, circle, start)), []
+        state = search(toy(monkeypatch, lambda x: (x[1] - 1) ** 2, circle, start))
+        tried: list[float] = []
 
         def worse(x: np.ndarray, step: np.ndarray, seen: Any = tried, of: Any = state) -> Any:
             seen.append(float(np.abs(step).max()))

@@ -167,11 +167,12 @@ def plain_simplex(
 
 
 def bowl(x: np.ndarray) -> float:
-    return 1.0 + (x[0] - 0.3) ** 2 + 4 * (x[1] + 0.2) ** 2 + 2 * (x[2] - 0.5) ** 2
+    return float(1.0 + (x[0] - 0.3) ** 2 + 4 * (x[1] + 0.2) ** 2 + 2 * (x[2] - 0.5) ** 2)
 
 
 def crease(x: np.ndarray) -> float:
-    return 2.0 + 0.93 * abs(x[0] - 0.31) + 3.1 * abs(x[1] - 0.87 * x[2]) + abs(x[1] + 0.4) ** 1.1
+    along = 0.93 * abs(x[0] - 0.31) + 3.1 * abs(x[1] - 0.87 * x[2])
+    return float(2.0 + along + abs(x[1] + 0.4) ** 1.1)
 
 
 def cliff(x: np.ndarray) -> float:

@@ -83,7 +83,12 @@ def test_a_margin_that_is_wished_for_raises_the_level_first(margin_m: float) -> 
 
 def test_strike_and_swing_are_kept_inside_their_zone(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
-    monkeypatch.setattr(points, "optima_at", lambda *arguments: asked.append(arguments[1:]) or [])
+
+    def optima(*arguments: object) -> list[Point]:
+        asked.append(arguments[1:])
+        return []
+
+    monkeypatch.setattr(points, "optima_at", optima)
     task = small_task(0, **RELAXED)
     for strike, turn in ((-0.01, 0.1), (0.01, 0.4), (0.05, -0.4)):
         assert optimum_at(task, strike, turn * task.frame.sideways) == []

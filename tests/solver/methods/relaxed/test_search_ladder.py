@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -214,7 +215,8 @@ def test_restored_points_of_both_tool_sides_are_asked(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(search, "restored_points", restored)
     monkeypatch.setattr(search, "optima_at", lambda _, strikes, swings: (strikes, swings))
-    strikes, swings = _restored(task)
+    found: Any = _restored(task)
+    strikes, swings = found
     assert sides == [1, -1]
     assert strikes.tolist() == [0.01, 0.02, -0.01, -0.02]
     u, v = task.frame.outward, task.frame.sideways
