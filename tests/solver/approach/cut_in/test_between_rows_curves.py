@@ -86,3 +86,12 @@ def test_waves_that_leave_between_rows_are_never_missed(phase: float) -> None:
         room = level - wave
         if room.min() >= 0.0 > (level - fine).min():
             assert may_fall_below_zero_between(room)
+
+
+@pytest.mark.parametrize(
+    "room", [[0.008, 0.025, 0.058, 0.04, 0.099], [0.067, 0.048, 0.032, 0.079, 0.012]]
+)
+def test_both_parabolas_of_a_pair_of_rows_are_looked_at(room: list[float]) -> None:
+    """Where the first has no least between the two, or has it elsewhere, the second may."""
+    assert may_fall_below_zero_between(np.array(room))
+    assert not may_fall_below_zero_between(np.array(room) + 0.1)

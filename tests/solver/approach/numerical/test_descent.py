@@ -186,3 +186,21 @@ def test_a_search_gains_and_stays_on_the_target() -> None:
     assert pose[:3, 3] == pytest.approx(task.target.position_m, abs=1e-9)
     assert pose[:3, :3] == pytest.approx(task.frame.axes(angle, 1), abs=1e-9)
     assert holds(chain, own, retreats, q)
+
+
+def test_what_leads_back_looks_from_the_angle_that_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before every step anew; as often as eight times."""
+    task, posture, _ = known(ROBOTS[0], 0)
+    own = pose_family(task, 1, task.lower, task.upper)
+    angles = [0.4321]
+
+    def stand_in(chain: Any, of: Any, axes: np.ndarray, share: float, q: Any, *_: Any) -> float:
+        assert axes == pytest.approx(task.frame.axes(angles[-1], 1))
+        assert share == 0.0
+        angles.append(angles[-1] + 0.1)
+        return 0.1
+
+    interpret(monkeypatch, module, step_towards=stand_in)
+    chain = chain_of(task.robot, task.tool)
+    assert math.isnan(interpreted(lead_back)(chain, own, 0.4321, posture.copy()))
+    assert len(angles) == 9

@@ -198,3 +198,11 @@ def test_of_angles_tried_those_that_are_feasible_are_spots() -> None:
         ]
     assert [(spot.tool_side, spot.branch, spot.angle_rad) for spot in spots] == expected
     assert len(expected) >= 2
+
+
+def test_eight_branches_of_both_sides_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(diagnosis, "trace", lambda *_: 0.0)
+    spots = diagnosis._tried_spots(small_task(2, symmetric_tool=True), np.array([0.2, 2.5]))
+    assert len(spots) == 2 * 8 * 2
+    monkeypatch.setattr(diagnosis, "trace", lambda *_: -1e-9)
+    assert diagnosis._tried_spots(TASK, np.array([0.2])) == []
