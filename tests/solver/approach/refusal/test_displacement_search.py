@@ -1,10 +1,12 @@
 """Rows that break, and the displacement that makes a target feasible."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
+from solver.approach.refusal import displacement_search as module
 from solver.approach.refusal.displacement_constraints import copy_at
 from solver.approach.refusal.displacement_search import (
     broken_row,
@@ -14,6 +16,7 @@ from solver.approach.refusal.displacement_search import (
 )
 from solver.approach.task.feasibility import trace
 from solver.kinematics.straight_rates import between_rate_room, posture_rate_room
+from tests.solver.interpreted import interpret, interpreted
 from tests.solver.methods.synthetic import small_task
 
 SMALL = small_task(2)
@@ -82,3 +85,77 @@ def test_of_all_branches_the_shortest_is_found() -> None:
     _, alone = nearest_displacement(moved, 2, start, 0.0, 3e-5, FAR_FROM_ALL, math.inf, 1e-4, rows)
     assert length <= float(np.linalg.norm(alone[:3])) * 1.01
     assert not nearest_of_all(moved, 0.0, 0.5 * length)[0]
+
+
+class Told:
+    """Rounds of a search whose minima, traces and margins are told."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, **told: list[Any]) -> None:
+        self.told = {name: list(values) for name, values in told.items()}
+        self.watched: list[Any] = []
+        interpret(
+            monkeypatch, module, minimise=self._minimise, broken_row=self._next("broken"),
+            fastest_row=self._next("fastest"), rows_displacement_margin=self._next("margins"),
+            trace=lambda *_: self.told["traces"].pop(0),
+        )  # fmt: skip
+
+    def _next(self, name: str) -> Any:
+        return lambda *_: self.told[name].pop(0)
+
+    def _minimise(self, task: Any, origin: Any, x: Any, turn: Any, branch: int, watched: Any,
+                  *_: Any) -> float:  # fmt: skip
+        self.watched.append(
+            (watched.rows[: watched.rows_count].tolist(),
+             watched.jumps[: watched.jumps_count].tolist(), watched.spread, watched.bent)
+        )  # fmt: skip
+        return float(self.told["missing"].pop(0)) if self.told.get("missing") else 0.0
+
+    def run(self, spread: float = 0.0, best: float = math.inf) -> tuple[bool, np.ndarray]:
+        x = np.array([0.03, 0.0, 0.04, 0.2])
+        done, found = interpreted(nearest_displacement)(
+            TASK, 2, x, spread, 3e-5, FAR_FROM_ALL, best, 1e-4, np.empty((16, 6))
+        )
+        assert found is not x
+        return bool(done), found
+
+
+def test_rows_that_break_are_watched_from_then_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = Told(monkeypatch, traces=[-1.0, -1.0, 0.0], broken=[7, 3])
+    assert told.run()[0]
+    assert [one[0] for one in told.watched] == [[15, 0], [15, 0, 7], [15, 0, 7, 3]]
+    again = Told(monkeypatch, traces=[-1.0, -1.0], broken=[7, 7])
+    assert not again.run()[0]
+    assert len(again.watched) == 2
+
+
+def test_rates_that_break_are_watched_after_a_step_away_from_singular_postures(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told = Told(monkeypatch, traces=[-1.0, -1.0, 0.0], broken=[-1, -1], fastest=[4, 9])
+    assert told.run()[0]
+    assert [one[1] for one in told.watched] == [[], [], [4], [4, 9]]
+    assert [one[3] > 0.0 for one in told.watched] == [False, True, False, False]
+
+
+def test_where_something_is_missing_or_it_is_too_long_it_is_left(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert not Told(monkeypatch, missing=[4e-5], traces=[0.0]).run()[0]
+    assert Told(monkeypatch, missing=[2e-5], traces=[0.0]).run()[0]
+    assert not Told(monkeypatch, traces=[0.0]).run(best=0.05)[0]
+    assert Told(monkeypatch, traces=[0.0]).run(best=0.051)[0]
+
+
+def test_a_margin_that_is_short_widens_what_has_to_be_borne(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    margins = [(0.001, 5, 0), (0.0018, 15, 0), (0.002, 5, 0)]
+    told = Told(monkeypatch, traces=[0.0] * 3, margins=margins)
+    assert told.run(spread=0.002)[0]
+    assert [one[0] for one in told.watched] == [[15, 0], [15, 0, 5], [15, 0, 5]]
+    wide = [0.002, 0.002 + 1.1 * 0.001 + 3e-5]
+    wide.append(wide[-1] + 1.1 * 0.0002 + 3e-5)
+    assert [one[2] for one in told.watched] == pytest.approx(wide)
+    never = Told(monkeypatch, traces=[0.0] * 7, margins=[(0.001, 5, 0)] * 7)
+    assert not never.run(spread=0.002)[0]
+    assert len(never.watched) == 7

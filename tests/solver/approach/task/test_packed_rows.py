@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from solver import Arc
 from solver.approach.task.packed import (
     COLUMNS,
     COS_HALF,
@@ -80,3 +81,17 @@ def test_a_whole_turn_never_limits_and_no_range_has_no_room(
     assert task.packed(1).numbers[COS_HALF : COS_HALF + 6] == pytest.approx(np.full(6, cosine))
     assert NEVER_LIMITS < -1.0
     assert NO_ROOM > 1.0
+
+
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_a_task_with_some_of_its_arcs(symmetric: bool) -> None:
+    task = small_task(2, symmetric_tool=symmetric)
+    sides = (1, -1) if symmetric else (1,)
+    arcs = [Arc(sides[-1], 5, 0.1, 0.3), Arc(1, 2, -0.4, 0.2)]
+    numbers, retreats, steps, places, branches, lower, upper = task.packed_arcs(arcs)
+    assert numbers.tolist() == [task.packed(side).numbers.tolist() for side in sides]
+    assert retreats.tolist() == list(task.retreats_m)
+    assert steps == pytest.approx(jump_cosines(task.retreats_m))
+    assert places.tolist() == [len(sides) - 1, 0]
+    assert branches.tolist() == [5, 2]
+    assert (lower.tolist(), upper.tolist()) == ([0.1, -0.4], [0.3, 0.2])
