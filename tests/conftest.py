@@ -4,6 +4,8 @@ import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numba
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -16,6 +18,10 @@ if TYPE_CHECKING:
 # The device of real servos, for tests/contracts/test_bus.py. The service has a setting of that
 # name, its HTTP port, so the services that tests start must not see it.
 SERVO_PORT = os.environ.pop("PRUNUS_PORT", "")
+
+if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+    # As compiled kernels do: a division by zero is infinite, without a warning.
+    np.seterr(all="ignore")
 
 # The same examples on every machine and in every run; kernels may compile on first use.
 settings.register_profile(
