@@ -50,6 +50,10 @@ def test_a_measure_stays_above_zero_that_changes_by_less() -> None:
 @pytest.mark.parametrize("at", [0.0, 0.0123, 0.0399, 0.04])
 def test_a_least_is_closed_in_on(at: float) -> None:
     def curve(retreats: np.ndarray, rows: Any = None) -> np.ndarray:
+        # Rows as they are followed: falling to the target, where the posture is known.
+        assert np.all(np.diff(retreats) < 0.0)
+        assert retreats[-1] == 0.0
+        assert rows is None or rows[-1] == pytest.approx(THINNING)
         return np.asarray(np.abs(retreats - at) - 0.25)
 
     dense = np.linspace(0.04, 0.0, 121)

@@ -206,3 +206,14 @@ def test_angles_out_of_reach_are_passed_over_where_others_came_closer(
     interpreted(closest_failure)(TASK, np.array([1.0, 2.0]), False)
     assert looked[0] == (1.0, 0)
     assert {branch for _, branch in looked} <= set(range(8))
+
+
+@pytest.mark.parametrize("turns", [-1, 0, 1])
+def test_limits_are_those_of_the_turn_next_to_the_reference(turns: int) -> None:
+    """Of a joint that may turn further than once, and not of the closed form's own."""
+    value = ROWS[-1, 5] + 2 * math.pi * turns
+    # A range of more than a turn that the closed form's own value is outside of.
+    ends = (value - 5.9, value + 0.5) if turns >= 0 else (value - 0.5, value + 5.9)
+    moved = drawn_in(5, *ends)
+    stage, *_ = failed(moved._replace(reference=np.append(TASK.reference[:5], value)))
+    assert stage == Stage.FEASIBLE

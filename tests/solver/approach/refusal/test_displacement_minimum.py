@@ -11,6 +11,7 @@ from scipy.optimize import minimize
 from solver.approach.refusal import displacement_minimum as module
 from solver.approach.refusal.displacement_constraints import Watched
 from solver.approach.refusal.displacement_minimum import lagrangian_slope, minimise, violation
+from solver.approach.refusal.penalty_programme import penalty_programme
 from solver.approach.task.constraints import LIMITS
 from tests.solver.interpreted import interpret, interpreted
 
@@ -147,3 +148,21 @@ def test_rates_get_more_and_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> No
     more = Told(monkeypatch, corner)
     more.run([0.4, -0.3, 0.0, 0.0], jumps=1)
     assert len(more.seen) >= few
+
+
+def test_the_penalty_is_ten_times_the_start_and_two_centimetres(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[float] = []
+
+    def spying(*given: Any) -> None:
+        asked.append(float(given[4]))
+        interpreted(penalty_programme)(*given)
+
+    told = Told(monkeypatch, *CASES["plane"])
+    monkeypatch.setattr(module, "penalty_programme", spying)
+    for start in ([0.02, 0.03, 0.06, 0.5], [0.0, 0.0, 0.0, 0.5]):
+        asked.clear()
+        told.run(start)
+        length = float(np.linalg.norm(start[:3]))
+        assert asked == pytest.approx([10 * (length + 0.02)] * len(asked))
