@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.approach.task.task import ApproachTask
 from solver.kinematics.families.family import Rail
-from solver.methods.tolerances import RAIL_POSITIONS
+from solver.methods.tolerances import RAIL_FINE_M, RAIL_POSITIONS
 from solver.problem.effort import posture_effort
 from solver.robots.model import Array
 
@@ -39,7 +39,9 @@ def rail_positions(task: ApproachTask) -> Array:
     reference's own position.
     """
     lower, upper = task.robot.lower[0], task.robot.upper[0]
+    own = task.reference[0]
     grid = lower + (upper - lower) * np.arange(RAIL_POSITIONS) / (RAIL_POSITIONS - 1)
-    positions = np.unique(np.append(grid, task.reference[0]))
-    travel = np.abs(positions - task.reference[0])
+    # Rounding of the grid would make a second of one place.
+    positions = np.sort(np.append(grid[np.abs(grid - own) > RAIL_FINE_M], own))
+    travel = np.abs(positions - own)
     return np.asarray(positions[np.argsort(travel, kind="stable")])

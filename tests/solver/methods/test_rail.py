@@ -44,3 +44,10 @@ def test_positions_are_the_whole_slide_and_where_it_stands_the_nearest_first() -
     assert np.all(np.diff(np.abs(positions - 0.1)) >= 0)
     apart = np.diff(np.sort(positions))
     assert apart.max() < 1.01 * (task.upper[0] - task.lower[0]) / (len(positions) - 2)
+
+
+def test_no_position_is_tried_twice_for_rounding() -> None:
+    """0.1 m is a place of the grid but for its last bit."""
+    positions = np.sort(rail_positions(task_of(TARGETS[0])))
+    assert np.diff(positions).min() > 1e-9
+    assert 0.1 in positions
