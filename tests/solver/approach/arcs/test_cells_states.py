@@ -247,7 +247,7 @@ def test_in_a_narrow_cell_a_valley_of_the_rate_is_looked_for(
 ) -> None:
     cell = jumping(0.4, 0.05, 0.05, 0.4)
     cell.width = 3e-4
-    assert cell.state(monkeypatch) == (CellState.EXTREME, JUMP, 0)
+    assert cell.state(monkeypatch) == (CellState.EXTREME, JUMP, -1)
     cell.width = 3.1e-4
     assert cell.state(monkeypatch) == (CellState.EXTREME, *NOTHING)
     cell.jumps[:] = 0.09, 0.05, 0.05, 0.09

@@ -2,14 +2,19 @@
 
 import math
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from solver.approach.arcs import roots
 from solver.approach.arcs.roots import (
+    WHOLE_CUT_IN,
     arc_scratch,
     extreme_margin,
+    fastest_row,
+    pull_in,
     root,
     single_margin,
     stretched,
@@ -20,15 +25,18 @@ from solver.approach.arcs.turns import (
     TURN_ROWS,
     jump_margin,
     row_margin,
+    row_room,
     turns_along_path,
 )
 from solver.approach.task.constraints import BESIDE, JUMP, REACH
+from solver.approach.task.packed import unpack_geometry
 from tests.solver.interpreted import interpreted
 from tests.solver.methods.synthetic import small_task
 
 Margin = Callable[[float], float]
 TASK = small_task(2).packed(1)
 ROWS = len(TASK.retreats)
+GEOMETRY = unpack_geometry(TASK.numbers)
 
 
 def told(monkeypatch: pytest.MonkeyPatch, margin: Margin) -> list[float]:
@@ -53,9 +61,23 @@ def test_a_single_margin_is_that_of_its_row_on_the_path(i: int) -> None:
         turns = np.empty((TURN_ROWS, 24))
         turns_along_path(TASK, angle, arm, turns)
         if i == JUMP:
-            assert found == jump_margin(TASK, turns, wrist)
+            assert found == pytest.approx(row_room(GEOMETRY, turns, row), abs=1e-12)
         else:
             assert found == pytest.approx(row_margin(TASK, turns, row, wrist, i), abs=1e-12)
+
+
+def test_the_jump_s_in_the_whole_cut_in_is_the_path_s() -> None:
+    """In the rows and between them, so it is not above that of any row."""
+    assert WHOLE_CUT_IN == -1
+    scratch, angle = arc_scratch(ROWS), 0.13
+    for arm, wrist in ((0, 1), (1, 0), (2, 1), (3, 0)):
+        found = single_margin(TASK, scratch, angle, WHOLE_CUT_IN, arm, wrist, JUMP)
+        turns = np.empty((TURN_ROWS, 24))
+        turns_along_path(TASK, angle, arm, turns)
+        assert found == jump_margin(TASK, turns, wrist)
+        rows = [single_margin(TASK, scratch, angle, row, arm, wrist, JUMP) for row in range(ROWS)]
+        assert found <= min(rows) + 1e-12
+        assert max(rows) > min(rows) + 1e-6
 
 
 def extreme(low: float, high: float, sign: float, bracket: float) -> tuple[float, float]:
@@ -138,7 +160,8 @@ def test_the_worst_constraint_and_its_row_are_told() -> None:
     assert worst_constraint(TASK, turns, 0, REACH, JUMP, margins) == (BESIDE, 7, -0.3)
     assert worst_constraint(TASK, turns, 0, REACH, BESIDE, margins) == (REACH, 3, -0.2)
     margins[JUMP] = -0.4
-    assert worst_constraint(TASK, turns, 0, 0, CONSTRAINTS, margins) == (JUMP, 0, -0.4)
+    worst = worst_constraint(TASK, turns, 0, 0, CONSTRAINTS, margins)
+    assert worst == (JUMP, WHOLE_CUT_IN, -0.4)
     margins[0] = -5.0
     turns[0], turns[1] = 1.0, 0.0
     turns[0, 6], turns[1, 6] = -1.0, 0.0
@@ -147,6 +170,88 @@ def test_the_worst_constraint_and_its_row_are_told() -> None:
     assert (worst, row, least) == (0, int(np.argmin(rows)), min(rows))
     margins[:] = 0.0
     assert worst_constraint(TASK, turns, 0, 0, CONSTRAINTS, margins)[0] == -1
+
+
+def beside_a_stretched_elbow(row: int) -> np.ndarray:
+    """A cut-in's turns whose elbow is all but stretched in one row: joints are too fast there."""
+    turns = np.zeros((TURN_ROWS, 24))
+    turns_along_path(TASK, 0.15, 1, turns)
+    angle = 1e-3 - GEOMETRY.beta
+    turns[4, row], turns[5, row] = math.cos(angle), math.sin(angle)
+    return turns
+
+
+@pytest.mark.parametrize("row", [0, 6, ROWS - 1])
+def test_the_fastest_row_has_the_least_room(row: int) -> None:
+    turns = beside_a_stretched_elbow(row)
+    rooms = [row_room(GEOMETRY, turns, n) for n in range(ROWS)]
+    assert fastest_row(TASK, turns) == (row, min(rooms))
+    assert (int(np.argmin(rooms)), min(rooms) < 0.0) == (row, True)
+    plain = np.zeros((TURN_ROWS, 24))
+    turns_along_path(TASK, 0.15, 1, plain)
+    rooms = [row_room(GEOMETRY, plain, n) for n in range(ROWS)]
+    assert fastest_row(TASK, plain) == (int(np.argmin(rooms)), min(rooms))
+    # Columns beyond the cut-in's rows are not rows of it.
+    assert plain.shape[1] > ROWS
+    plain[:, ROWS:] = turns[:, [row]]
+    assert fastest_row(TASK, plain) == (int(np.argmin(rooms)), min(rooms))
+
+
+def test_a_jump_is_told_in_its_fastest_row_or_between_rows() -> None:
+    """The margin is the path's in either case; the row is where that margin is met."""
+    turns, margins = beside_a_stretched_elbow(6), np.full(CONSTRAINTS, 0.1)
+    room = fastest_row(TASK, turns)[1]
+    for least, row in ((room, 6), (room + 1e-9, 6), (room - 1e-9, WHOLE_CUT_IN)):
+        margins[JUMP] = least
+        worst = worst_constraint(TASK, turns, 0, 0, CONSTRAINTS, margins)
+        assert worst == (JUMP, row, least)
+        assert worst_constraint(TASK, turns, 0, 0, JUMP, margins)[0] == -1
+    # Another one that is worse is told instead.
+    turns[6 + REACH, 3] = margins[REACH] = room - 1.0
+    assert worst_constraint(TASK, turns, 0, 0, CONSTRAINTS, margins) == (REACH, 3, room - 1.0)
+
+
+@pytest.mark.parametrize(("row", "met"), [(2, 0.7), (0, 0.7), (WHOLE_CUT_IN, 0.3)])
+def test_a_jump_is_closed_in_on_in_its_row_alone(
+    monkeypatch: pytest.MonkeyPatch, row: int, met: float
+) -> None:
+    """Between the row's own rooms at both ends; between rows, the path's."""
+    asked: list[tuple[Any, ...]] = []
+    start, end, work = "at start", "at end", "work"
+
+    def worst(task: object, turns: object, *_: object) -> tuple[int, int, float]:
+        return (JUMP, row, -0.2) if turns == start else (-1, 0, 0.0)
+
+    def room(geometry: object, turns: object, n: int) -> float:
+        assert (turns, n) == (end, row)
+        return 0.7
+
+    def root_of(task: object, scratch: object, *given: Any) -> float:
+        asked.append(given)
+        return 0.4
+
+    monkeypatch.setattr(roots, "worst_constraint", worst)
+    monkeypatch.setattr(roots, "row_room", room)
+    monkeypatch.setattr(roots, "root", root_of)
+    monkeypatch.setattr(roots, "turns_along_path", lambda *_: None)
+    monkeypatch.setattr(roots, "path_margins", lambda *_: None)
+    monkeypatch.setattr(roots, "stretched", lambda *_: False)
+    scratch = SimpleNamespace(work=work, work_margins=None)
+
+    def pulled(jump_at_start: float, jump_at_end: float) -> tuple[float, int, bool]:
+        at_start, at_end = np.full(CONSTRAINTS, 9.0), np.full(CONSTRAINTS, 9.0)
+        at_start[JUMP], at_end[JUMP] = jump_at_start, jump_at_end
+        found: tuple[float, int, bool] = interpreted(pull_in)(
+            TASK, scratch, 2, 1, 0, CONSTRAINTS, 0.0, 1.0, start, end, at_start, at_end
+        )
+        return found
+
+    assert pulled(-0.2, 0.3) == (0.4, JUMP, True)
+    assert asked == [(2, 1, JUMP, row, 0.0, -0.2, 1.0, met)]
+    # Whether the cell has a feasible part, and behaves, is still told by all of the cut-in.
+    assert pulled(-0.2, -0.1) == (1.0, JUMP, True)
+    assert pulled(0.1, 0.3) == (1.0, JUMP, False)
+    assert len(asked) == 1
 
 
 @pytest.mark.parametrize(("elbow", "expected"), [(0.09, True), (-0.09, True), (0.11, False)])

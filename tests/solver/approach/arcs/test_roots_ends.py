@@ -30,6 +30,7 @@ class Inwards:
         self.flip = -1.0 if mirrored else 1.0
         for name in ("worst_constraint", "row_margin", "root", "stretched"):
             monkeypatch.setattr(roots, name, getattr(self, f"_{name}"))
+        monkeypatch.setattr(roots, "row_room", self._row_room)
         monkeypatch.setattr(roots, "turns_along_path", self._turns)
         monkeypatch.setattr(roots, "path_margins", lambda *_: None)
         self.at: dict[int, float] = {}
@@ -54,6 +55,9 @@ class Inwards:
 
     def _row_margin(self, task: object, turns: object, row: int, wrist: int, i: int) -> float:
         return self.margin(i, row, self.at[id(turns)])
+
+    def _row_room(self, g: object, turns: object, row: int) -> float:
+        return self.margin(JUMP, row, self.at[id(turns)])
 
     def _root(self, task: object, scratch: object, arm: int, wrist: int, i: int, row: int,
               broken: float, f_broken: float, met: float, f_met: float) -> float:  # fmt: skip

@@ -10,10 +10,12 @@ import pytest
 from solver.approach.arcs import search
 from solver.approach.arcs.arcs import sample_angles_of, task_arcs
 from solver.approach.arcs.cells import ARC_NODES, CellState
+from solver.approach.arcs.effort_bound import write_reference
 from solver.approach.arcs.many import arcs_of_many
 from solver.approach.arcs.roots import arc_scratch
 from solver.approach.arcs.search import (
     cell_pieces,
+    cell_state,
     close_turn,
     find_arcs,
     know_margins,
@@ -194,6 +196,7 @@ class Pieces:
     ) -> None:
         self.asked: list[tuple[Any, ...]] = []
         self.nodes: list[int] = []
+        self.state = state
         monkeypatch.setattr(search, "know_path", lambda task, arm, k, *_: self.nodes.append(k))
         monkeypatch.setattr(
             search, "know_margins", lambda task, wrist, k, *_: self.nodes.append(-k)
@@ -210,21 +213,28 @@ class Pieces:
             return tight
 
         def settle(task: object, scratch: object, *given: Any) -> int:
-            self.asked.append(("settle", *given[:6]))
+            self.asked.append(("settle", *given[:6], given[-1]))
             return 99
 
         monkeypatch.setattr(search, "path_state", path_state)
         monkeypatch.setattr(search, "tighten", tighten)
         monkeypatch.setattr(search, "settle", settle)
 
-    def run(self, k: int) -> tuple[int, list[float]]:
         paths = [[f"{arm}p{n}" for n in range(CELLS)] for arm in range(4)]
         margins = np.arange(4 * 2 * CELLS).reshape(4, 2, CELLS)
-        scratch = SimpleNamespace(
+        self.scratch = SimpleNamespace(
             paths=paths, known_paths=[None] * 4, margins=margins, known_margins=margins
         )
+
+    def judged(self, k: int) -> CellState:
+        return CellState(interpreted(cell_state)(TASK, self.scratch, 2, 1, k))
+
+    def run(self, k: int, best: float = math.inf) -> tuple[int, list[float]]:
+        """Of a cell that was judged before: no node is asked for again."""
+        known = list(self.nodes)
         arcs = np.zeros((MOST_ARCS, ARC_COLUMNS))
-        count = interpreted(cell_pieces)(TASK, scratch, 2, 1, k, arcs, 0, 0)
+        count = interpreted(cell_pieces)(TASK, self.scratch, 2, 1, k, self.state, arcs, 0, 0, best)
+        assert self.nodes == known
         return count, arcs[0].tolist()
 
 
@@ -233,20 +243,28 @@ def test_a_cell_is_judged_by_its_ends_and_the_nodes_beside_them(
     monkeypatch: pytest.MonkeyPatch, k: int
 ) -> None:
     pieces = Pieces(monkeypatch, CellState.FULL)
+    assert pieces.judged(k) == CellState.FULL
     low, high = -math.pi + STEP * k, -math.pi + STEP * (k + 1)
     assert pieces.run(k) == (1, [5.0, pytest.approx(low), pytest.approx(high), JUMP, JUMP])
     outer, left, right, beyond = ((k + off) % CELLS for off in (-1, 0, 1, 2))
     assert pieces.nodes == [outer, left, right, beyond, -left, -right]
     names = tuple(f"2p{n}" for n in (outer, left, right, beyond))
     assert pieces.given == (*names, (2 * 2 + 1) * CELLS + left, (2 * 2 + 1) * CELLS + right)
+    for state in CellState:
+        assert Pieces(monkeypatch, state).judged(k) == state
 
 
 def test_dead_cells_hold_nothing_and_others_are_split(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert Pieces(monkeypatch, CellState.DEAD).run(9)[0] == 0
+    dead = Pieces(monkeypatch, CellState.DEAD)
+    assert dead.run(9)[0] == 0
+    assert dead.asked == []
     split = Pieces(monkeypatch, CellState.EXTREME)
     assert split.run(9)[0] == 99
     ends = pytest.approx(-math.pi + STEP * 9), pytest.approx(-math.pi + STEP * 10)
-    assert split.asked == [("settle", 2, 1, *ends, JUMP, JUMP)]
+    assert split.asked == [("settle", 2, 1, *ends, JUMP, JUMP, math.inf)]
+    split.asked.clear()
+    assert split.run(9, 3.5)[0] == 99
+    assert split.asked == [("settle", 2, 1, *ends, JUMP, JUMP, 3.5)]
 
 
 @pytest.mark.parametrize("state", [CellState.CROSSED, CellState.EDGE])
@@ -254,40 +272,56 @@ def test_crossed_cells_are_tightened(monkeypatch: pytest.MonkeyPatch, state: Cel
     """Kept if that behaves, but where only the reach was looked at; split if it does not."""
     is_edge = state == CellState.EDGE
     pieces = Pieces(monkeypatch, state, (True, 0.2, 0.3, 3, 4))
-    count, arc = pieces.run(9)
+    count, arc = pieces.run(9, 3.5)
     tightened = pieces.asked[0]
     low, high = -math.pi + STEP * 9, -math.pi + STEP * 10
     assert tightened[:5] == ("tighten", 2, 1, *((REACH, JUMP) if is_edge else (0, CONSTRAINTS)))
     assert tightened[5:9] == (pytest.approx(low), pytest.approx(high), "2p9", "2p10")
     if is_edge:
         assert count == 99
-        assert pieces.asked[1] == ("settle", 2, 1, 0.2, 0.3, 3, 4)
+        assert pieces.asked[1] == ("settle", 2, 1, 0.2, 0.3, 3, 4, 3.5)
     else:
         assert (count, arc) == (1, [5.0, 0.2, 0.3, 3.0, 4.0])
+    # Margins of the branch's own, at both ends of the cell; of the last cell too.
+    own = (2 * 2 + 1) * CELLS
+    assert tightened[9:] == (own + 9, own + 10)
+    pieces.run(CELLS - 1)
+    tightened = next(one for one in reversed(pieces.asked) if one[0] == "tighten")
+    assert tightened[7:] == (f"2p{CELLS - 1}", "2p0", own + CELLS - 1, own)
     for low, high in ((0.3, 0.3), (0.4, 0.3)):
         assert Pieces(monkeypatch, state, (True, low, high, 3, 4)).run(9)[0] == 0
     unclean = Pieces(monkeypatch, state, (False, 0.3, 0.2, 3, 4))
-    assert unclean.run(9)[0] == 99
+    assert unclean.run(9, 3.5)[0] == 99
     assert unclean.asked[1][0] == "settle"
     assert unclean.asked[1][3] == pytest.approx(-math.pi + STEP * 9)
+    assert unclean.asked[1][7] == 3.5
 
 
 def test_all_open_cells_of_all_branches_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     scratch = SimpleNamespace(open_cells=np.zeros((4, 2, CELLS), dtype=np.bool_))
     looked: list[tuple[int, ...]] = []
+    states = {(0, 71): CellState.FULL, (3, 0): CellState.DEAD, (7, 4): CellState.EDGE}
 
     def opened(task: object, given: Any) -> None:
         given.open_cells[0, 0, 71] = given.open_cells[1, 1, 0] = given.open_cells[3, 1, [4, 9]] = (
             True
         )
 
-    def pieces(task: object, given: object, arm: int, wrist: int, k: int, arcs: object, start: int,
-               count: int) -> int:  # fmt: skip
+    def judged(task: object, given: object, arm: int, wrist: int, k: int) -> CellState:
+        assert given is scratch
+        return states.get((2 * arm + wrist, k), CellState.EXTREME)
+
+    def pieces(task: object, given: object, arm: int, wrist: int, k: int, state: CellState,
+               arcs: object, start: int, count: int, best: float) -> int:  # fmt: skip
+        assert state == judged(task, given, arm, wrist, k)
+        # All arcs are wanted, whatever they cost.
+        assert best == math.inf
         looked.append((arm, wrist, k, start, count))
         return count + 2
 
     closed: list[tuple[int, int]] = []
     monkeypatch.setattr(search, "open_up", opened)
+    monkeypatch.setattr(search, "cell_state", judged)
     monkeypatch.setattr(search, "cell_pieces", pieces)
 
     def close(arcs: object, start: int, count: int) -> int:
@@ -298,6 +332,47 @@ def test_all_open_cells_of_all_branches_are_looked_at(monkeypatch: pytest.Monkey
     assert interpreted(find_arcs)(TASK, scratch, np.zeros((MOST_ARCS, 5))) == 8
     assert looked == [(0, 0, 71, 0, 0), (1, 1, 0, 2, 2), (3, 1, 4, 4, 4), (3, 1, 9, 4, 6)]
     assert closed == [(0, 2), (2, 2), (2, 2), (2, 4), (4, 4), (4, 4), (4, 4), (4, 8)]
+
+
+@pytest.mark.parametrize("share", [1.001, 1.2])
+@pytest.mark.parametrize("index", [0, 2])
+def test_only_what_costs_at_least_the_best_is_left_out(index: int, share: float) -> None:
+    """Every angle of less effort stays in the pieces; without a best no reference is looked at."""
+    task = small_task(index)
+    packed, scratch = task.packed(1), arc_scratch(len(task.retreats_m))
+    scratch.reference[:] = np.nan
+    open_up(packed, scratch)
+
+    def pieces_of(best: float) -> dict[tuple[int, int], np.ndarray]:
+        found = {}
+        for arm, wrist, k in np.argwhere(scratch.open_cells):
+            arcs = np.full((MOST_ARCS, ARC_COLUMNS), np.nan)
+            state = cell_state(packed, scratch, arm, wrist, k)
+            count = cell_pieces(packed, scratch, arm, wrist, k, state, arcs, 0, 0, best)
+            found[int(2 * arm + wrist), int(k)] = arcs[:count]
+        return found
+
+    every = pieces_of(math.inf)
+    write_reference(packed, scratch.reference)
+    angles = {
+        cell: np.concatenate([np.linspace(low, high, 9) for _, low, high, *_ in pieces])
+        for cell, pieces in every.items()
+        if len(pieces) > 0
+    }
+    efforts = {cell: sample_angles_of(task, 1, one)[1][cell[0]] for cell, one in angles.items()}
+    best = share * min(one.min() for one in efforts.values())
+    kept, left_out, cheaper = pieces_of(best), 0, 0
+    for cell, own in angles.items():
+        for _, low, high, *_ in kept[cell]:
+            assert any(a <= low and high <= b for _, a, b, *_ in every[cell])
+        inside = np.zeros(len(own), dtype=np.bool_)
+        for _, low, high, *_ in kept[cell]:
+            inside |= (low <= own) & (own <= high)
+        assert inside[efforts[cell] < best].all()
+        cheaper += int(np.count_nonzero(efforts[cell] < best))
+        left_out += int(np.count_nonzero(~inside))
+    assert cheaper > 0
+    assert left_out > 0
 
 
 def test_task_arcs_are_named_after_what_ends_them() -> None:

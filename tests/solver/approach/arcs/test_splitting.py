@@ -1,5 +1,6 @@
 """Pieces of cells: kept, joined, and split out of cells whose states are told."""
 
+import math
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -9,7 +10,7 @@ import pytest
 
 from solver.approach.arcs import splitting
 from solver.approach.arcs.cells import CellState
-from solver.approach.arcs.roots import CELL_SLOTS, arc_scratch
+from solver.approach.arcs.roots import CELL_SLOTS, WHOLE_CUT_IN, arc_scratch
 from solver.approach.arcs.splitting import (
     ARC_COLUMNS,
     MOST_ARCS,
@@ -94,12 +95,15 @@ class Settled:
         self.first: list[tuple[int, int]] = []
         self.extreme: Callable[..., tuple[float, float]] = lambda a, b, sign: ((a + b) / 2, -1.0)
         self.signs: list[float] = []
+        self.extreme_of: list[tuple[int, int]] = []
+        self.least: Callable[[float, float], float] | None = None
+        self.asked_least: list[tuple[float, float]] = []
         self.slivers: list[tuple[float, float]] = []
         self.known: list[tuple[float, float]] = []
         self.arcs = np.zeros((MOST_ARCS, ARC_COLUMNS))
         self.scratch = arc_scratch(ROWS)
         for name in ("know_cell", "path_margins", "path_state", "tighten", "extreme_margin",
-                     "row_margin", "append_sliver"):  # fmt: skip
+                     "row_margin", "append_sliver", "effort_at_least"):  # fmt: skip
             monkeypatch.setattr(splitting, name, getattr(self, f"_{name}"))
         for name in ("push", "append_arc", "forget_cells"):
             monkeypatch.setattr(splitting, name, interpreted(getattr(splitting, name)))
@@ -114,10 +118,24 @@ class Settled:
 
     def _path_margins(self, task: object, path: object, wrist: int, margins: np.ndarray) -> None:
         margins[:] = 1.0
-        slot = next(
-            k for k in range(CELL_SLOTS) if np.shares_memory(self.scratch.cell_margins[k], margins)
-        )
-        margins[:] = self.margins.get(round(float(self.scratch.cell_angles[slot]), 9), margins)
+        angle = self.angle_of(self.scratch.cell_margins, margins)
+        margins[:] = self.margins.get(round(angle, 9), margins)
+
+    def angle_of(self, kept: np.ndarray, one: np.ndarray) -> float:
+        slot = next(k for k in range(CELL_SLOTS) if np.shares_memory(kept[k], one))
+        return float(self.scratch.cell_angles[slot])
+
+    def _effort_at_least(self, task: object, reference: np.ndarray, wrist: int,
+                         *around: Any) -> float:  # fmt: skip
+        assert self.least is not None
+        assert reference is self.scratch.reference
+        assert wrist == 1
+        # The last column is the thinning posture's, however many rows there are.
+        assert set(around[1::2]) == {self.scratch.cell_paths.shape[2] - 1}
+        outer, a, b, beyond = (self.angle_of(self.scratch.cell_paths, one) for one in around[::2])
+        assert (outer, beyond) == pytest.approx((a - (b - a), b + (b - a)))
+        self.asked_least.append((round(a, 9), round(b, 9)))
+        return self.least(a, b)
 
     def _path_state(self, task: object, wrist: int, width: float, *others: object) -> Any:
         (a, exact), (b, _), (outer, near), (beyond, _) = self.known[-4:]
@@ -137,6 +155,7 @@ class Settled:
                         bracket: float) -> Any:  # fmt: skip
         assert bracket == 1e-7
         self.signs.append(sign)
+        self.extreme_of.append((i, row))
         return self.extreme(a, b, sign)
 
     def _row_margin(self, task: object, path: object, row: int, wrist: int, i: int) -> float:
@@ -149,8 +168,10 @@ class Settled:
 
     at_left = -1.0
 
-    def pieces(self) -> list[Piece]:
-        count = interpreted(settle)(TASK, self.scratch, 2, 1, 0.0, 1.0, 11, 12, self.arcs, 0, 0)
+    def pieces(self, best: float = math.inf) -> list[Piece]:
+        count = interpreted(settle)(
+            TASK, self.scratch, 2, 1, 0.0, 1.0, 11, 12, self.arcs, 0, 0, best
+        )
         assert all(self.arcs[:count, 0] == 5)
         return [(round(a, 9), round(b, 9), int(c), int(d)) for _, a, b, c, d in self.arcs[:count]]
 
@@ -180,6 +201,31 @@ def test_ends_of_the_cell_keep_what_ends_them(monkeypatch: pytest.MonkeyPatch) -
     assert Settled(monkeypatch, parts(-1.0)).pieces() == [(0.0, 1.0, 11, 12)]
     pieces = Settled(monkeypatch, parts(-1.0, 0.25, 0.5)).pieces()
     assert pieces == [(0.0, 0.25, 11, JUMP), (0.5, 1.0, JUMP, 12)]
+
+
+def test_parts_that_cost_at_least_the_best_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each part is asked for, before its margins are; none where nothing is known to be better."""
+    settled = Settled(monkeypatch, parts(0.25, 0.625))
+    assert settled.pieces(math.inf) == [(0.25, 0.625, JUMP, JUMP)]
+    assert settled.asked_least == []
+    everything = list(settled.seen)
+    settled.least = lambda a, b: a
+    settled.seen.clear()
+    assert settled.pieces(0.5) == [(0.25, 0.5, JUMP, JUMP)]
+    assert settled.asked_least == [(0, 1), (0, 0.5), (0, 0.25), (0.25, 0.5), (0.5, 1)]
+    assert settled.seen == everything[:4]
+    # Just below the best is looked at.
+    settled.seen.clear()
+    assert settled.pieces(0.5 + 1e-9) == [(0.25, 0.625, JUMP, JUMP)]
+    assert settled.seen == everything[:7]
+    # What is left out in between ends the piece before it.
+    settled.least = lambda a, b: 1.0 if (a, b) == (0.25, 0.5) else 0.0
+    settled.rule = parts(-1.0, 0.25, 0.25)
+    assert settled.pieces(1.0) == [(0.0, 0.25, 11, JUMP), (0.5, 1.0, JUMP, 12)]
+    settled.least = lambda a, b: 1.0
+    settled.seen.clear()
+    assert settled.pieces(1.0) == []
+    assert settled.seen == []
 
 
 def crossed(state: CellState = CellState.CROSSED) -> Rule:
@@ -232,12 +278,12 @@ def test_where_the_reach_is_entered_only_reaches_are_tightened_first(
 
 
 @pytest.mark.parametrize(("at_left", "sign"), [(-0.1, 1.0), (0.0, -1.0), (0.2, -1.0)])
-@pytest.mark.parametrize("i", [3, JUMP])
+@pytest.mark.parametrize(("i", "row"), [(3, 1), (JUMP, -1)])
 def test_a_cell_is_split_at_its_extreme(
-    monkeypatch: pytest.MonkeyPatch, i: int, at_left: float, sign: float
+    monkeypatch: pytest.MonkeyPatch, i: int, row: int, at_left: float, sign: float
 ) -> None:
     def rule(a: float, b: float) -> tuple[CellState, int, int]:
-        return (CellState.EXTREME, i, 1) if b - a > 0.9 else (CellState.FULL, -1, 0)
+        return (CellState.EXTREME, i, row) if b - a > 0.9 else (CellState.FULL, -1, 0)
 
     settled = Settled(monkeypatch, rule)
     settled.at_left = at_left
@@ -247,6 +293,7 @@ def test_a_cell_is_split_at_its_extreme(
     assert settled.pieces() == [(0.0, 1.0, 11, 12)]
     assert settled.seen == [(0, 1), (0, 0.3), (0.3, 1)]
     assert settled.signs == [sign]
+    assert settled.extreme_of == [(i, row)]
     # A largest value below zero leaves nothing; a smallest one above says nothing.
     settled.seen.clear()
     settled.extreme = lambda a, b, sign: (0.3, -0.5)
@@ -283,15 +330,26 @@ def sliver(
     """Of rates that are slow enough around 0.4 alone; the others' least margin there."""
     arcs = np.zeros((MOST_ARCS, ARC_COLUMNS))
     scratch = SimpleNamespace(work=None, work_margins=np.full(CONSTRAINTS, others))
-    monkeypatch.setattr(splitting, "extreme_margin", lambda *given: (0.4, room(0.4)))
+
+    def extreme(task: object, scratch: object, arm: int, wrist: int, i: int, row: int, low: float,
+                high: float, sign: float, bracket: float) -> tuple[float, float]:  # fmt: skip
+        assert (arm, wrist, i, row) == (2, 1, JUMP, WHOLE_CUT_IN)
+        assert (low, high, sign, bracket) == (0.0, 1.0, 1.0, 1e-9)
+        return 0.4, room(0.4)
+
+    def single(task: object, scratch: object, angle: float, *given: int) -> float:
+        assert given == (WHOLE_CUT_IN, 2, 1, JUMP)
+        return room(angle)
+
+    monkeypatch.setattr(splitting, "extreme_margin", extreme)
     monkeypatch.setattr(splitting, "turns_along_path", lambda *_: None)
     monkeypatch.setattr(splitting, "path_margins", lambda *_: None)
-    monkeypatch.setattr(splitting, "single_margin", lambda *given: room(given[2]))
+    monkeypatch.setattr(splitting, "single_margin", single)
     monkeypatch.setattr(splitting, "append_arc", interpreted(append_arc))
 
     def root(task: object, scratch: object, arm: int, wrist: int, i: int, row: int, end: float,
              beyond: float, where: float, value: float) -> float:  # fmt: skip
-        assert (arm, wrist, i) == (2, 1, JUMP)
+        assert (arm, wrist, i, row) == (2, 1, JUMP, WHOLE_CUT_IN)
         assert (beyond, where, value) == (room(end), 0.4, room(0.4))
         return 0.4 + (0.01 if end > 0.4 else -0.01)
 

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from solver.approach.arcs.arcs import sample_angles_of, task_arcs
+from solver.approach.arcs.cells import CellState
+from solver.approach.arcs.effort_bound import effort_at_least, write_reference
 from solver.approach.arcs.roots import arc_scratch
 from solver.approach.arcs.search import open_up
-from solver.approach.arcs.turns import TURN_ROWS
 from solver.approach.optimum import cheapest as module
 from solver.approach.optimum.at_level import cheapest_at_level, raise_margins
 from solver.approach.optimum.batch_search import (
@@ -20,11 +21,9 @@ from solver.approach.optimum.batch_search import (
     write_path,
 )
 from solver.approach.optimum.cheapest import (
-    angle_of_cosine,
     at_cusp,
     cheapest,
     cheapest_scratch,
-    effort_at_least,
     list_open_cells,
     take_cheapest,
 )
@@ -54,14 +53,6 @@ def test_joints_have_a_cusp_at_the_edge_of_reach_alone(code: int) -> None:
     assert interpreted(at_cusp)(code) == (code in (REACH, BESIDE))
 
 
-@pytest.mark.parametrize("angle", [0.0, 1e-9, 0.5, 1.5, 3.0, math.pi])
-def test_an_angle_from_its_cosine(angle: float) -> None:
-    tolerance = 1e-7 if angle in (1e-9, math.pi) else 1e-12
-    found = interpreted(angle_of_cosine)(math.cos(angle))
-    assert found == pytest.approx(angle, abs=tolerance)
-    assert interpreted(angle_of_cosine)(1.0 + 1e-16) == 0.0
-
-
 def test_the_cheapest_cell_is_taken_and_put_last() -> None:
     cells = np.arange(15).reshape(5, 3)
     bounds = np.array([4.0, 2.0, 5.0, 1.0, 0.5])
@@ -69,11 +60,14 @@ def test_the_cheapest_cell_is_taken_and_put_last() -> None:
     assert bounds.tolist() == [4.0, 2.0, 5.0, 1.0, 0.5]
     assert cells[3].tolist() == [9, 10, 11]
     assert take_cheapest(cells, bounds, 3, 9.0)
-    assert bounds[:2].tolist() == [4.0, 5.0]
+    # Its bound goes with it.
+    assert bounds.tolist() == [4.0, 5.0, 2.0, 1.0, 0.5]
     assert cells[:3].tolist() == [[0, 1, 2], [6, 7, 8], [3, 4, 5]]
     assert not take_cheapest(cells, bounds, 2, 4.0)
+    assert bounds[:2].tolist() == [4.0, 5.0]
     assert take_cheapest(cells, bounds, 2, 4.1)
     assert cells[:2].tolist() == [[6, 7, 8], [0, 1, 2]]
+    assert bounds.tolist() == [5.0, 4.0, 2.0, 1.0, 0.5]
     assert not take_cheapest(cells, bounds, 0, 9.0)
 
 
@@ -83,64 +77,29 @@ def test_open_cells_are_listed_with_a_bound_of_their_effort(norm: str) -> None:
     task = small_task(2, norm=norm, joint_weights=(1, 2, 1, 1, 3, 1))
     scratch, most = opened(task), 2 * 4 * CELLS
     cells, bounds = np.zeros((most, 3), dtype=np.int64), np.empty(most)
-    reference = np.empty((6, 2))
-    count = list_open_cells(
-        task.packed(1), scratch.open_cells, scratch.thinning, reference, cells, bounds
-    )
+    scratch.reference[:] = np.nan
+    count = list_open_cells(task.packed(1), scratch, cells, bounds)
     expected = np.argwhere(scratch.open_cells)[:, [0, 1, 2]]
     assert cells[:count].tolist() == expected.tolist()
     assert count == scratch.open_cells.sum()
-    # Of the tabletop's, whose joints have no offsets but where the robot's file says.
-    assert np.hypot(reference[:, 0], reference[:, 1]) == pytest.approx(np.ones(6))
+    # The reference is written as well, for those who split the cells.
+    reference = np.empty((6, 2))
+    write_reference(task.packed(1), reference)
+    assert scratch.reference.tolist() == reference.tolist()
     tight = []
     for (arm, wrist, k), bound in zip(cells[:count], bounds[:count], strict=True):
         angles = -math.pi + STEP * (k + np.array([0.01, 0.3, 0.5, 0.7, 0.99]))
         margins, efforts = sample_angles_of(task, 1, angles)
+        # Node k of the turn is the one before the cell.
+        turns = scratch.thinning[arm]
+        assert bound == effort_at_least(
+            task.packed(1), reference, wrist, turns, k, turns, k + 1, turns, k + 2, turns, k + 3
+        )
         own = efforts[2 * arm + wrist][margins[2 * arm + wrist] >= 0.0]
         assert np.all(own >= bound - 1e-9)
         tight += [bound / cost for cost in own]
     assert len(tight) > 10
     assert np.median(tight) > 0.5
-
-
-def still(turns: np.ndarray, i: int, *angles: float) -> None:
-    turns[2 * i], turns[2 * i + 1] = np.cos(angles), np.sin(angles)
-
-
-@pytest.mark.parametrize("squared", [False, True])
-def test_a_bound_by_hand(squared: bool) -> None:
-    """One joint turns, the others are where the reference is."""
-    task = small_task(2, norm="l2" if squared else "l1", joint_weights=(1, 1, 1, 1, 1, 5))
-    turns, reference = np.ones((TURN_ROWS, 8)), np.tile([1.0, 0.0], (6, 1))
-    for i in range(6):
-        still(turns, i, *[0.0] * 8)
-
-    def bound(*angles: float, wrist: int = 0) -> float:
-        still(turns, 5, 0.0, 0.0, *angles, 0.0, 0.0)
-        return float(effort_at_least(task.packed(1), turns, reference, wrist, 2))
-
-    def cost(travel: float) -> float:
-        return 5 * (travel**2 if squared else travel)
-
-    # Half of what it turns, in the cell or beside it, is taken from the nearer end.
-    assert bound(0.9, 1.0, 1.1, 1.2) == pytest.approx(cost(1.0 - 0.05))
-    assert bound(0.6, 1.0, 1.1, 1.2) == pytest.approx(cost(1.0 - 0.2))
-    assert bound(0.9, 1.0, 1.1, 1.5) == pytest.approx(cost(1.0 - 0.2))
-    assert bound(0.9, 1.2, 1.0, 1.1) == pytest.approx(cost(1.0 - 0.15))
-    assert bound(0.0, 0.05, 0.2, 0.2) == 0.0
-    # The other wrist has its joints 4 and 6 half a turn further: here all of them.
-    other = bound(0.9, 1.0, 1.1, 1.2, wrist=1)
-    assert other == pytest.approx(cost(math.pi - 1.1 - 0.05) + bound_of_half_turn(squared))
-    # A joint that swings says nothing; nor may it at the edge of reach by half alone.
-    assert bound(0.9, 1.0, 1.9, 2.0) == 0.0
-    turns[6 + REACH, 3:] = -1.0
-    turns[6 + REACH, 3] = 1.0
-    assert bound(0.9, 1.0, 1.1, 1.2) == pytest.approx(cost(1.0 - 0.1))
-
-
-def bound_of_half_turn(squared: bool) -> float:
-    """Joint 4, with a weight of one, half a turn from where the reference is."""
-    return math.pi**2 if squared else math.pi
 
 
 @pytest.mark.parametrize("norm", ["l1", "l2"])
@@ -158,6 +117,95 @@ def test_the_cheapest_is_the_least_over_all_arcs(norm: str, index: int) -> None:
     again = cheapest(task.packed(1), scratch, effort)
     assert (again[1], again[2]) == (-1, effort)
     assert math.isnan(again[0])
+
+
+class Listed:
+    """Cells whose bounds, states and least efforts are told: each holds one piece, or none."""
+
+    def __init__(
+        self, monkeypatch: pytest.MonkeyPatch, *rows: tuple[float, CellState, float]
+    ) -> None:
+        self.rows = rows
+        self.looked: list[tuple[int, float]] = []
+        self.refined: list[tuple[int, float]] = []
+        self.judged: list[int] = []
+        names = ("open_up", "list_open_cells", "cell_state", "cell_pieces", "least_effort")
+        for name in names:
+            monkeypatch.setattr(module, name, getattr(self, f"_{name}"))
+        monkeypatch.setattr(module, "take_cheapest", interpreted(take_cheapest))
+        monkeypatch.setattr(module, "at_cusp", interpreted(at_cusp))
+
+    def _open_up(self, task: object, arcs: object) -> None:
+        self.opened = arcs
+
+    def _list_open_cells(self, task: object, arcs: object, cells: np.ndarray,
+                         bounds: np.ndarray) -> int:  # fmt: skip
+        assert arcs is self.opened
+        for n, (bound, _, _) in enumerate(self.rows):
+            cells[n], bounds[n] = (n % 4, n % 2, n), bound
+        return len(self.rows)
+
+    def _cell_state(self, task: object, arcs: object, arm: int, wrist: int, k: int) -> CellState:
+        assert (arcs is self.opened, arm, wrist) == (True, k % 4, k % 2)
+        self.judged.append(int(k))
+        return self.rows[k][1]
+
+    def _cell_pieces(self, task: object, arcs: object, arm: int, wrist: int, k: int,
+                     state: CellState, pieces: np.ndarray, start: int, count: int,
+                     best: float) -> int:  # fmt: skip
+        assert (arm, wrist, state) == (k % 4, k % 2, self.rows[k][1])
+        assert (start, count) == (0, 0)
+        self.looked.append((int(k), float(best)))
+        pieces[0] = 2 * arm + wrist, k, k + 0.5, REACH, 3
+        return int(self.rows[k][2] < math.inf)
+
+    def _least_effort(self, task: object, samples: object, cell: object, own: int, low: float,
+                      high: float, low_cusp: bool, high_cusp: bool,
+                      best: float) -> tuple[float, float, int]:  # fmt: skip
+        k = int(low)
+        assert (own, high) == (2 * (k % 4) + k % 2, k + 0.5)
+        assert (low_cusp, high_cusp) == (True, False)
+        self.refined.append((k, float(best)))
+        return low + 0.25, self.rows[k][2], 10
+
+    def run(self, best: float) -> tuple[float, int, float, int]:
+        angle, branch, effort, work = interpreted(cheapest)(TASK, cheapest_scratch(ROWS), best)
+        return float(angle), int(branch), float(effort), int(work)
+
+
+def test_cells_that_have_to_be_split_are_put_off_to_the_end(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Others first, each kind in the order of its bounds, down to what may be below the best."""
+    none, extreme, edge = math.inf, CellState.EXTREME, CellState.EDGE
+    listed = Listed(
+        monkeypatch,
+        (3.0, edge, 2.9), (1.0, extreme, 4.0), (4.0, CellState.CROSSED, 4.5),
+        (2.0, CellState.FULL, 5.0), (6.0, CellState.FULL, 6.1), (2.5, CellState.DEAD, none),
+        (4.4, extreme, 4.4), (2.2, edge, 3.1), (4.6, extreme, 0.0), (3.05, extreme, 3.05),
+    )  # fmt: skip
+    assert listed.run(10.0) == (0.25, 0, 2.9, 50)
+    # Until 4.5 is known everything below; then what was put off, until it is 3.1, then 2.9.
+    assert listed.looked == [(3, 10.0), (5, 5.0), (2, 5.0), (1, 4.5), (7, 4.0), (0, 3.1)]
+    assert listed.refined == [(3, 10.0), (2, 5.0), (1, 4.5), (7, 4.0), (0, 3.1)]
+    assert listed.judged == [1, 3, 7, 5, 0, 9, 2, 6, 1, 7, 0]
+
+
+def test_where_all_cells_have_to_be_split_they_are_taken_in_their_order(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    listed = Listed(
+        monkeypatch,
+        (2.0, CellState.EXTREME, 2.5), (1.0, CellState.EDGE, math.inf), (3.0, CellState.EDGE, 3.0),
+    )  # fmt: skip
+    assert listed.run(math.inf) == (0.25, 0, 2.5, 10)
+    assert listed.looked == [(1, math.inf), (0, math.inf)]
+    # Nothing below what is known: none is looked at.
+    listed.looked.clear()
+    angle, branch, effort, work = listed.run(1.0)
+    assert math.isnan(angle)
+    assert (branch, effort, work) == (-1, 1.0, 0)
+    assert listed.looked == []
 
 
 @pytest.mark.parametrize("wished", [0.002, 0.006])

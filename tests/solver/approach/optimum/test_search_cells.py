@@ -16,17 +16,17 @@ from tests.solver.approach.optimum.told import WEIGHTS_OF, task_of
 
 @pytest.mark.parametrize("squared", [False, True])
 def test_what_effort_is_at_least_between_two_samples(squared: bool) -> None:
-    """Each joint's smaller travel less half of what it turns beside; nothing where it passes."""
+    """Each joint's smaller travel less half of how its turn changes; nothing where it passes."""
     task = task_of(squared)
     joints = np.random.default_rng(1).uniform(-1.0, 1.0, (6, 5))
     for k in range(4):
         expected = 0.0
         for i in range(6):
             travel = joints[i] - task.numbers[REFERENCE + i]
-            around = [n for n in (k - 1, k, k + 1) if 0 <= n < 4]
-            beside = max(abs(travel[n + 1] - travel[n]) for n in around)
+            turns = np.diff(travel)
+            changes = [abs(turns[n] - turns[k]) for n in (k - 1, k + 1) if 0 <= n < 4]
             a, b = travel[k], travel[k + 1]
-            least = 0.0 if a * b < 0 else max(min(abs(a), abs(b)) - beside / 2, 0.0)
+            least = 0.0 if a * b < 0 else max(min(abs(a), abs(b)) - max(changes) / 2, 0.0)
             expected += WEIGHTS_OF[i] * (least**2 if squared else least)
         assert least_in_cell(task, joints, k, 5) == pytest.approx(expected)
 
