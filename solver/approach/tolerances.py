@@ -6,10 +6,6 @@ ARC_CELLS: Final = 72
 """Cells of one turn in which arcs are searched (5 deg). A single joint's margin is smooth in the
 angle, with a few extrema a turn; a cell must not hold two of them."""
 
-CELL_SWING_COSINE: Final = 0.7
-"""Cosine of the turn of a joint from cell to cell (0.8 rad) from which the cell is halved: beside a
-straight wrist joints 4 and 6 turn by half a turn in an arbitrarily short way."""
-
 ANGLE_STEP_RAD: Final = 1e-10
 """Width to which an approach angle is closed in on [rad]: the best of those refused, and cells in
 which a joint swings too far for its kinks to be told apart."""

@@ -13,6 +13,7 @@ from enum import IntEnum
 from typing import Final
 
 from solver.approach.arcs.tolerances import (
+    CELL_SWING_COSINE,
     CLEAR_MARGIN,
     CLEAR_ROOM,
     NARROW_JUMP_RAD,
@@ -30,7 +31,7 @@ from solver.approach.arcs.turns import (
 )
 from solver.approach.task.constraints import BESIDE, JUMP, REACH
 from solver.approach.task.packed import COS_HALF
-from solver.approach.tolerances import ARC_CELLS, CELL_SWING_COSINE
+from solver.approach.tolerances import ARC_CELLS
 from solver.compiled import inlined, kernel
 
 ARC_NODES: Final = ARC_CELLS + 3

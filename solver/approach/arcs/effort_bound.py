@@ -8,9 +8,10 @@ It follows from the thinning posture at the cell's ends and one cell beyond them
 import math
 
 from solver.approach.arcs.cells import enters_reach
+from solver.approach.arcs.tolerances import CELL_SWING_COSINE
 from solver.approach.arcs.turns import wrist_sign
 from solver.approach.task.packed import REFERENCE, SQUARED, WEIGHTS, unpack_geometry
-from solver.approach.tolerances import CELL_SWING_COSINE, TURN_CHANGE_SHARE
+from solver.approach.tolerances import TURN_CHANGE_SHARE
 from solver.compiled import inlined, kernel
 from solver.kinematics.arctangent import atan2
 from solver.problem.effort import joint_cost

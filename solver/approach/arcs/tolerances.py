@@ -6,6 +6,10 @@ ARC_END_RAD: Final = 1e-15
 """Width to which the ends of an arc are refined [rad]; the feasible side is kept. At the edge of
 reach joints turn with the square root of the angle: 1e-12 would leave 1e-6 of the effort there."""
 
+CELL_SWING_COSINE: Final = 0.7
+"""Cosine of the turn of a joint from cell to cell (0.8 rad) from which the cell is halved: beside a
+straight wrist joints 4 and 6 turn by half a turn in an arbitrarily short way."""
+
 CLEAR_MARGIN: Final = 0.1
 """Margin [difference of cosines, or m] at both ends of a cell above which a joint is not looked at
 in each row: it would have to turn back within 5 degrees of approach angle."""

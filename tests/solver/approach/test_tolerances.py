@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from solver.approach.arcs.tolerances import CELL_SWING_COSINE
 from solver.approach.tolerances import (
     ANGLE_STEP_RAD,
     ARC_CELLS,
-    CELL_SWING_COSINE,
     EXCHANGE_DENSITY,
     LEAST_EFFORT_CELLS,
     UNCERTAINTY_DEVIATIONS,
