@@ -8,7 +8,7 @@ import pytest
 from bench.scenes import blocks, leaves, mixed, postures, twigs
 from bench.second_opinion import MujocoArm
 from solver import Robot
-from solver.kinematics.forward import link_transforms
+from solver.kinematics.forward import forward_kinematics, link_transforms
 from solver.robots.shapes import Box, Capsule
 from solver.scene.arm_body import arm_body
 from solver.scene.clearance import (
@@ -63,6 +63,21 @@ def test_mujoco_agrees_on_what_touches(tabletop: Robot, name: str, tool: str) ->
         assert found == (depth < 0.0)
         touching += found
     assert 10 < touching < asked - 10
+
+
+def test_a_thin_rod_through_a_box_touches_though_mujoco_sees_nothing(tabletop: Robot) -> None:
+    """MuJoCo 4.0.1; what points of the rod's axis say, at its own places, decides."""
+    tool = tabletop.tool("scaffold")
+    assert tool is not None
+    home = np.array(tabletop.home_joints)
+    x, y, z = forward_kinematics(tabletop, tool, home)[:3, 3].tolist()
+    around = Scene((), (Block("box", Box((x, y, z), (0.08, 0.08, 0.08))),))
+    aside = Scene((), (Block("box", Box((x, y + 0.3, z), (0.08, 0.08, 0.08))),))
+    for scene, through in ((around, True), (aside, False)):
+        obstacles = pack_scene(scene, tabletop.reach_m(tool))
+        scratch = scratch_of(tabletop, tool.name)
+        assert touches(arm_body(tabletop, tool), obstacles, 0.0, home, scratch) == through
+        assert MujocoArm(tabletop, tool, scene).runs_through_a_box(home) == through
 
 
 @pytest.mark.parametrize("name", ["twigs", "points", "many twigs"])
