@@ -10,7 +10,7 @@ from bench.scenes import leaves, mixed, postures, twigs
 from bench.second_opinion import MujocoArm
 from solver import load_robot
 from solver.robots.model import Array, Robot, Tool
-from solver.scene.arm_body import arm_body
+from solver.scene.arm_body import arm_body, body_reach_m
 from solver.scene.many_postures import nearest_pairs, touching
 from solver.scene.obstacles import Scene
 from solver.scene.packing import Obstacles, pack_scene
@@ -36,7 +36,7 @@ def measure(quick: bool) -> list[Row]:
     rows = []
     for number, (nearest_m, wanted) in TWIGS.items():
         scene = Scene(twigs(number, number, nearest_m))
-        obstacles = pack_scene(scene, robot.reach_m(tool))
+        obstacles = pack_scene(scene, body_reach_m(robot, tool, UP_TO_M))
         capsules = sum(len(list(chain.capsules())) for chain in scene.chains)
         name = f"whether a free posture touches, {capsules:,} capsules"
         rows.append(_touch(name, robot, tool, obstacles, count, wanted))
@@ -44,7 +44,7 @@ def measure(quick: bool) -> list[Row]:
     cloud, times = Scene((), (), (), (leaves(7, points, clusters=60),)), []
     for _ in range(6):
         began = time.perf_counter()
-        obstacles = pack_scene(cloud, robot.reach_m(tool))
+        obstacles = pack_scene(cloud, body_reach_m(robot, tool, UP_TO_M))
         touching(arm_body(robot, tool), obstacles, CLEARANCE_M, postures(robot, 1, 1))
         times.append(time.perf_counter() - began)
     name = f"whether a free posture touches, {points:,} points"
@@ -88,7 +88,10 @@ def _second_opinion(robot: Robot, count: int) -> list[Row]:
     disagreeing = at_contact = touched = unseen = 0
     for k in range(scenes):
         tool, scene = tools[k % len(tools)], mixed(100 + 3 * k)
-        second, obstacles = MujocoArm(robot, tool, scene), pack_scene(scene, robot.reach_m(tool))
+        second, obstacles = (
+            MujocoArm(robot, tool, scene),
+            pack_scene(scene, body_reach_m(robot, tool, UP_TO_M)),
+        )
         drawn = postures(robot, 200 + k, count // scenes)
         pairs = nearest_pairs(arm_body(robot, tool), obstacles, UP_TO_M, drawn)
         near = np.abs(pairs.distances_m) < AT_CONTACT_M

@@ -68,6 +68,19 @@ def arm_body(robot: Robot, tool: Tool) -> ArmBody:
     )
 
 
+def body_reach_m(robot: Robot, tool: Tool, most_m: float) -> float:
+    """How far from the base something may be that comes within `most_m` of a part of the arm [m].
+
+    No link's frame is further than the tool centre point may be; its shapes stick out.
+    """
+    shapes = arm_body(robot, tool).capsules
+    ends = np.maximum(
+        np.linalg.norm(shapes[:, :3], axis=1),
+        np.linalg.norm(shapes[:, :3] + shapes[:, 3:6], axis=1),
+    )
+    return robot.reach_m(tool) + float((ends + shapes[:, 6]).max(initial=0.0)) + most_m
+
+
 def shape_names(robot: Robot, tool: Tool) -> tuple[str, ...]:
     """Whose each capsule of the body is: names of joints, or TOOL."""
     own = [joint.name for joint in robot.joints for _ in joint.body]

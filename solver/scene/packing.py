@@ -29,6 +29,7 @@ class Obstacles(NamedTuple):
         capsules: that are looked at one by one, shape (n, CAPSULE_COLUMNS).
         balls: centre and radius of the balls around them, column by column, shape (4, n).
         gridded: that are found by the grid, shape (m, CAPSULE_COLUMNS).
+        grid: over these.
         boxes: shape (k, BOX_COLUMNS).
         planes: shape (l, PLANE_COLUMNS).
         of_capsules: numbers in `Scene.ids`, shape (n,); so the other three.
@@ -51,8 +52,8 @@ def pack_scene(scene: Scene, reach_m: float, *, soft: bool = False) -> Obstacles
 
     Args:
         scene: with shapes that make sense.
-        reach_m: what is further from the base than this can be met by no part of the arm and is
-            left out of the grid [m].
+        reach_m: what is further from the base than this is left out of the grid: it is for
+            distances up to those for which `body_reach_m` answered this [m].
         soft: what may be touched in place of what may not.
     """
     capsules, owners = _capsules(scene, soft)

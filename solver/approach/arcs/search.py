@@ -149,20 +149,8 @@ def cell_pieces(task, scratch, arm, wrist, k, state, arcs, start, count, best):
             return append_arc(arcs, start, count, arm, wrist, a, b, by_a, by_b)
         if clean:
             return settle(task, scratch, arm, wrist, a, b, by_a, by_b, arcs, start, count, best)
-    return settle(
-        task,
-        scratch,
-        arm,
-        wrist,
-        low,
-        high,
-        JUMP_IN_CUT_IN,
-        JUMP_IN_CUT_IN,
-        arcs,
-        start,
-        count,
-        best,
-    )
+    by = JUMP_IN_CUT_IN
+    return settle(task, scratch, arm, wrist, low, high, by, by, arcs, start, count, best)
 
 
 @kernel

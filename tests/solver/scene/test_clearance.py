@@ -10,7 +10,7 @@ from bench.second_opinion import MujocoArm
 from solver import Robot
 from solver.kinematics.forward import forward_kinematics, link_transforms
 from solver.robots.shapes import Box, Capsule
-from solver.scene.arm_body import arm_body
+from solver.scene.arm_body import arm_body, body_reach_m
 from solver.scene.clearance import (
     NOBODY,
     BodyScratch,
@@ -51,7 +51,7 @@ def test_mujoco_agrees_on_what_touches(tabletop: Robot, name: str, tool: str) ->
     assert mounted is not None
     second = MujocoArm(tabletop, mounted, SCENES[name])
     body, scratch = arm_body(tabletop, mounted), scratch_of(tabletop, tool)
-    obstacles = pack_scene(SCENES[name], tabletop.reach_m(mounted))
+    obstacles = pack_scene(SCENES[name], body_reach_m(tabletop, mounted, 0.05))
     touching = asked = 0
     for q in postures(tabletop, 6, 300):
         depth, _, _ = nearest(body, obstacles, 0.0, q, scratch)
@@ -74,7 +74,7 @@ def test_a_thin_rod_through_a_box_touches_though_mujoco_sees_nothing(tabletop: R
     around = Scene((), (Block("box", Box((x, y, z), (0.08, 0.08, 0.08))),))
     aside = Scene((), (Block("box", Box((x, y + 0.3, z), (0.08, 0.08, 0.08))),))
     for scene, through in ((around, True), (aside, False)):
-        obstacles = pack_scene(scene, tabletop.reach_m(tool))
+        obstacles = pack_scene(scene, body_reach_m(tabletop, tool, 0.05))
         scratch = scratch_of(tabletop, tool.name)
         assert touches(arm_body(tabletop, tool), obstacles, 0.0, home, scratch) == through
         assert MujocoArm(tabletop, tool, scene).runs_through_a_box(home) == through
@@ -85,7 +85,7 @@ def test_depths_are_those_of_mujoco(tabletop: Robot, name: str) -> None:
     mounted = tabletop.tools[0]
     second = MujocoArm(tabletop, mounted, SCENES[name])
     body, scratch = arm_body(tabletop, mounted), scratch_of(tabletop, mounted.name)
-    obstacles = pack_scene(SCENES[name], tabletop.reach_m(mounted))
+    obstacles = pack_scene(SCENES[name], body_reach_m(tabletop, mounted, 0.05))
     compared = 0
     for q in postures(tabletop, 7, 600):
         depth, _, _ = nearest(body, obstacles, 0.0, q, scratch)
@@ -106,7 +106,7 @@ def test_the_nearest_pair_is_that_of_points_along_both(tabletop: Robot) -> None:
     tool = tabletop.tools[0]
     body, scratch = arm_body(tabletop, tool), scratch_of(tabletop, tool.name)
     scene = Scene(twigs(8, 6))
-    obstacles = pack_scene(scene, tabletop.reach_m(tool))
+    obstacles = pack_scene(scene, body_reach_m(tabletop, tool, 0.05))
     for q in postures(tabletop, 9, 25):
         frames = link_transforms(tabletop, tool, q)
         back = np.eye(4)
@@ -136,7 +136,11 @@ def test_the_grid_finds_what_looking_at_each_finds(
     tabletop: Robot, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tool = tabletop.tools[0]
-    body, scratch, reach = arm_body(tabletop, tool), scratch_of(tabletop), tabletop.reach_m(tool)
+    body, scratch, reach = (
+        arm_body(tabletop, tool),
+        scratch_of(tabletop),
+        body_reach_m(tabletop, tool, 0.05),
+    )
     monkeypatch.setattr("solver.scene.packing.DIRECT_CAPSULES", 10_000)
     direct = pack_scene(SCENES[name], reach)
     monkeypatch.setattr("solver.scene.packing.DIRECT_CAPSULES", 0)
@@ -150,11 +154,33 @@ def test_the_grid_finds_what_looking_at_each_finds(
         assert touches(body, gridded, 0.005, q, scratch) == touches(body, direct, 0.005, q, scratch)
 
 
+def test_what_a_stretched_arm_all_but_meets_is_not_left_out(tabletop: Robot) -> None:
+    """Points beyond what the tool centre point may ever reach, and yet beside the arm's shapes."""
+    tool = tabletop.tools[1]
+    body, scratch = arm_body(tabletop, tool), scratch_of(tabletop, tool.name)
+    rng, looked = np.random.default_rng(12), 0
+    for q in postures(tabletop, 13, 40):
+        tip = forward_kinematics(tabletop, tool, q)[:3, 3]
+        further = tip * (tabletop.reach_m(tool) + 0.001) / np.linalg.norm(tip)
+        points = further + rng.uniform(0.0, 0.002, (500, 1)) * further
+        obstacles = pack_scene(
+            Scene((), (), (), (Points("points", points, 0.001),)),
+            body_reach_m(tabletop, tool, 0.2),
+        )
+        assert len(obstacles.gridded) == 500
+        distance, shape, _ = nearest(body, obstacles, 0.2, q, scratch)
+        if float(np.linalg.norm(further - tip)) < 0.2:
+            assert shape != NOBODY
+            assert distance < np.linalg.norm(further - tip)
+            looked += 1
+    assert looked > 10
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_a_clearance_is_what_it_is_told_to_be(tabletop: Robot, name: str) -> None:
     tool = tabletop.tools[0]
     body, scratch = arm_body(tabletop, tool), scratch_of(tabletop)
-    obstacles = pack_scene(SCENES[name], tabletop.reach_m(tool))
+    obstacles = pack_scene(SCENES[name], body_reach_m(tabletop, tool, 0.05))
     free = 0
     for q in postures(tabletop, 11, 100):
         distance, shape, obstacle = nearest(body, obstacles, 0.05, q, scratch)
@@ -177,8 +203,8 @@ def test_soft_obstacles_are_packed_apart(tabletop: Robot) -> None:
         (Plane("wall", (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)),),
         (Points("seen", np.array([[0.2, 0.0, 0.3]]), 0.01, soft=True),),
     )
-    hard = pack_scene(scene, tabletop.reach_m(tool))
-    soft = pack_scene(scene, tabletop.reach_m(tool), soft=True)
+    hard = pack_scene(scene, body_reach_m(tabletop, tool, 0.05))
+    soft = pack_scene(scene, body_reach_m(tabletop, tool, 0.05), soft=True)
     assert [scene.ids[k] for k in hard.of_capsules] == ["hard"]
     assert [scene.ids[k] for k in hard.of_planes] == ["wall"]
     assert not len(hard.of_boxes)

@@ -4,7 +4,7 @@ import numpy as np
 
 from bench.scenes import mixed, postures
 from solver import Robot
-from solver.scene.arm_body import arm_body, shape_names
+from solver.scene.arm_body import arm_body, body_reach_m, shape_names
 from solver.scene.clearance import body_scratch, nearest, touches
 from solver.scene.many_postures import nearest_pairs, touching
 from solver.scene.packing import pack_scene
@@ -12,7 +12,10 @@ from solver.scene.packing import pack_scene
 
 def test_each_is_what_it_is_alone(tabletop: Robot) -> None:
     tool, scene = tabletop.tools[1], mixed(31)
-    body, obstacles = arm_body(tabletop, tool), pack_scene(scene, tabletop.reach_m(tool))
+    body, obstacles = (
+        arm_body(tabletop, tool),
+        pack_scene(scene, body_reach_m(tabletop, tool, 0.05)),
+    )
     drawn = postures(tabletop, 32, 60)
     pairs, scratch = nearest_pairs(body, obstacles, 0.05, drawn), body_scratch(body)
     found = touching(body, obstacles, 0.005, drawn)
