@@ -24,9 +24,6 @@ MOST_TESTS_S: Final = 9.0
 MOST_FOLDER_S: Final = 600.0
 """Until it is known how long the tests of a file or folder take; what comes later is left out."""
 
-_RAN: Final = (0, 1)
-"""What pytest ends with after it has run all, whether some failed or none."""
-
 
 def environment(*, interpreted: bool) -> dict[str, str]:
     """Of a test run: kernels interpreted or not, no plugins of pytest but our own."""
@@ -75,7 +72,7 @@ def _measure(files: tuple[Path, ...], result: Path, *, interpreted: bool) -> Non
     watched = {MOST_S: str(MOST_TEST_S), DURATIONS: str(partial)}
     partial.write_text("{}")
     with contextlib.suppress(subprocess.TimeoutExpired):
-        run = subprocess.run(
+        subprocess.run(
             command,
             cwd=REPOSITORY,
             env={**environment(interpreted=interpreted), **watched},
@@ -84,6 +81,6 @@ def _measure(files: tuple[Path, ...], result: Path, *, interpreted: bool) -> Non
             timeout=MOST_FOLDER_S,
             check=False,
         )
-        if run.returncode not in _RAN:
-            raise RuntimeError(f"the tests of {', '.join(map(str, files))} cannot be measured")
+    if not json.loads(partial.read_text()):
+        raise RuntimeError(f"none of the tests of {', '.join(map(str, files))} has run")
     partial.rename(result)
