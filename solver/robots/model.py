@@ -168,11 +168,6 @@ class Robot:
         return tuple(joint.name for joint in self.joints)
 
     @property
-    def has_body(self) -> bool:
-        """Whether the model says what space the arm takes up."""
-        return any(joint.body for joint in self.joints)
-
-    @property
     def has_masses(self) -> bool:
         """Whether every link's mass is in the model."""
         return all(joint.link is not None for joint in self.joints)

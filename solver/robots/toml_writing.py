@@ -47,7 +47,8 @@ def _lines(robot: Robot) -> Iterator[str]:
     if robot.body_source:
         yield f"body_source = {_text(robot.body_source)}"
     if robot.kept_apart:
-        yield f"kept_apart = {json.dumps(robot.kept_apart)}"
+        pairs = (f"[{_text(one)}, {_text(other)}]" for one, other in robot.kept_apart)
+        yield f"kept_apart = [{', '.join(pairs)}]"
     for fixture in robot.fixtures:
         yield from ("", "[[fixtures]]", f"name = {_text(fixture.name)}")
         yield from _capsule_lines("fixtures.capsules", fixture.capsules)

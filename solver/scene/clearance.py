@@ -10,7 +10,13 @@ import numpy as np
 from solver.compiled import inlined, kernel
 from solver.kinematics.numerical import locate
 from solver.robots.model import Array
-from solver.scene.distances import distance_to_box, distance_to_plane, squared_between
+from solver.scene.distances import (
+    between_capsules,
+    distance_to_box,
+    distance_to_plane,
+    may_be_within,
+    squared_between,
+)
 from solver.scene.grid import HALF_DIAGONAL, first_and_last
 from solver.scene.tolerances import GRID_STEP_CELLS, GUESSED_ITEMS, LEAST_FREE_CELLS
 
@@ -44,24 +50,6 @@ def place_body(body, q, scratch):
             row[3 + i] = x * own[3] + y * own[4] + z * own[5]
             row[7 + i] = row[i] + row[3 + i] / 2
         row[6], row[10] = own[6], own[10]
-
-
-@inlined
-def may_be_within(one, other, most):
-    """Whether the balls around two capsules are nearer to each other than `most`."""
-    x, y, z = one[7] - other[7], one[8] - other[8], one[9] - other[9]
-    near = max(one[10] + other[10] + most, 0.0)
-    return x * x + y * y + z * z < near * near
-
-
-@inlined
-def between_capsules(one, other):
-    """Distance of two capsules; how deep they are in each other, below zero [m]."""
-    squared = squared_between(
-        one[0], one[1], one[2], one[3], one[4], one[5],
-        other[0], other[1], other[2], other[3], other[4], other[5],
-    )  # fmt: skip
-    return math.sqrt(squared) - one[6] - other[6]
 
 
 @inlined

@@ -1,7 +1,4 @@
-"""Kernels: distances of straight segments to each other, to boxes and to planes.
-
-All are those of lines without thickness; a capsule's radius is taken off by who asks.
-"""
+"""Kernels: distances of capsules to each other, and of their axes to boxes and planes."""
 
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls, allow-untyped-decorators
 
@@ -37,6 +34,24 @@ def squared_between(ax, ay, az, dx, dy, dz, bx, by, bz, ex, ey, ez):
     s = clamped((de * t - rd) / max(dd, LEAST_DIVISOR))
     x, y, z = rx + s * dx - t * ex, ry + s * dy - t * ey, rz + s * dz - t * ez
     return x * x + y * y + z * z
+
+
+@inlined
+def may_be_within(one, other, most):
+    """Whether the balls around two capsules are nearer to each other than `most`."""
+    x, y, z = one[7] - other[7], one[8] - other[8], one[9] - other[9]
+    near = max(one[10] + other[10] + most, 0.0)
+    return x * x + y * y + z * z < near * near
+
+
+@inlined
+def between_capsules(one, other):
+    """Distance of two capsules; how deep they are in each other, below zero [m]."""
+    squared = squared_between(
+        one[0], one[1], one[2], one[3], one[4], one[5],
+        other[0], other[1], other[2], other[3], other[4], other[5],
+    )  # fmt: skip
+    return math.sqrt(squared) - one[6] - other[6]
 
 
 @kernel

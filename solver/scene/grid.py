@@ -69,12 +69,13 @@ def fill_grid(capsules: Array, reach_m: float) -> Grid:
     cell = max(float(size.max()), float(radii.max())) / GRID_CELLS
     counts = np.maximum(np.ceil(size / cell), 1).astype(np.int64)
     cells = int(counts.prod())
-    starts = np.zeros(cells + 1, dtype=np.int32)
-    count_items(capsules, low, cell, counts, starts)
-    np.cumsum(starts, out=starts)
+    starts, filled = np.zeros((2, cells + 1), dtype=np.int32)
+    put_items(capsules, low, cell, counts, starts, np.empty(0, dtype=np.int32), filled)
+    np.cumsum(filled[:-1], out=starts[1:])
     items = np.empty(int(starts[-1]), dtype=np.int32)
-    put_items(capsules, low, cell, counts, starts, items)
-    gaps = np.where(np.diff(starts) > 0, 0.0, math.inf)
+    filled[:] = 0
+    put_items(capsules, low, cell, counts, starts, items, filled)
+    gaps = np.where(filled[:-1] > 0, 0.0, math.inf)
     nearest = np.arange(cells, dtype=np.int32)
     squared_gaps(gaps, nearest, counts)
     # Between centres of cells; a place and a solid are each half a diagonal off theirs at most.
@@ -91,11 +92,11 @@ def first_and_last(low, high, origin, per_cell, count):
 
 
 @kernel
-def cell_range(capsule, grown, origin, cell, counts, ranges):
-    """Writes the cells around a capsule that is thicker by so much, shape (3, 2)."""
+def cell_range(capsule, origin, cell, counts, ranges):
+    """Writes the cells around a capsule along x, y and z, shape (3, 2)."""
     for i in range(3):
         a, b = capsule[i], capsule[i] + capsule[3 + i]
-        low, high = min(a, b) - capsule[6] - grown, max(a, b) + capsule[6] + grown
+        low, high = min(a, b) - capsule[6], max(a, b) + capsule[6]
         ranges[i, 0], ranges[i, 1] = first_and_last(low, high, origin[i], 1.0 / cell, counts[i])
 
 
@@ -117,11 +118,21 @@ def is_in_cell(capsule, x, y, z, cell):
 
 
 @kernel
-def put_items(capsules, origin, cell, counts, starts, items):
-    """Writes the numbers of the capsules in each cell, as many as `starts` has room for."""
-    ranges, filled = np.empty((3, 2), dtype=np.int64), np.zeros(len(starts), dtype=np.int32)
+def put_items(capsules, origin, cell, counts, starts, items, filled):
+    """Counts the capsules in each cell into `filled`, and writes their numbers if there is room.
+
+    Args:
+        capsules: shape (n, CAPSULE_COLUMNS).
+        origin: the grid's lowest corner, shape (3,) [m].
+        cell: length of its cells' edges [m].
+        counts: cells along x, y and z, shape (3,).
+        starts: where each cell's items begin, shape (cells + 1,).
+        items: shape (starts[-1],); without room capsules are only counted.
+        filled: zeros, shape (cells + 1,).
+    """
+    ranges = np.empty((3, 2), dtype=np.int64)
     for m in range(len(capsules)):
-        cell_range(capsules[m], 0.0, origin, cell, counts, ranges)
+        cell_range(capsules[m], origin, cell, counts, ranges)
         for i in range(ranges[0, 0], ranges[0, 1]):
             for j in range(ranges[1, 0], ranges[1, 1]):
                 for k in range(ranges[2, 0], ranges[2, 1]):
@@ -130,24 +141,9 @@ def put_items(capsules, origin, cell, counts, starts, items):
                     z = origin[2] + (k + 0.5) * cell
                     if is_in_cell(capsules[m], x, y, z, cell):
                         number = (i * counts[1] + j) * counts[2] + k
-                        items[starts[number] + filled[number]] = m
+                        if len(items) > 0:
+                            items[starts[number] + filled[number]] = m
                         filled[number] += 1
-
-
-@kernel
-def count_items(capsules, origin, cell, counts, starts):
-    """Counts the capsules in each cell, into the place behind the cell's own in `starts`."""
-    ranges = np.empty((3, 2), dtype=np.int64)
-    for m in range(len(capsules)):
-        cell_range(capsules[m], 0.0, origin, cell, counts, ranges)
-        for i in range(ranges[0, 0], ranges[0, 1]):
-            for j in range(ranges[1, 0], ranges[1, 1]):
-                for k in range(ranges[2, 0], ranges[2, 1]):
-                    x = origin[0] + (i + 0.5) * cell
-                    y = origin[1] + (j + 0.5) * cell
-                    z = origin[2] + (k + 0.5) * cell
-                    if is_in_cell(capsules[m], x, y, z, cell):
-                        starts[(i * counts[1] + j) * counts[2] + k + 1] += 1
 
 
 @kernel

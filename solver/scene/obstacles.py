@@ -1,7 +1,7 @@
 """A scene: obstacles as they are given, in the robot's base frame [m]."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,7 +88,7 @@ class Scene:
     chains: Sequence[Chain] = ()
     blocks: Sequence[Block] = ()
     planes: Sequence[Plane] = ()
-    points: Sequence[Points] = field(default=())
+    points: Sequence[Points] = ()
 
     @property
     def ids(self) -> tuple[str, ...]:

@@ -115,7 +115,7 @@ def test_the_largest_offset_itself_is_one(bench: Bench, monkeypatch: pytest.Monk
     true[3] += 0.1
     largest = float(np.abs(measure_offsets(bench.arm.chain, true)).max())
     monkeypatch.setattr(calibrating, "LARGEST_CALIBRATION_RAD", largest)
-    measure_offsets(bench.arm.chain, true)
+    assert np.abs(measure_offsets(bench.arm.chain, true)).max() == largest
 
 
 # --- The file -------------------------------------------------------------------------------------

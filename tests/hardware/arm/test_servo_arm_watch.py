@@ -182,6 +182,7 @@ def test_reads_that_lag_have_to_follow_each_other(bench: Bench) -> None:
         poll_round(bench, 2)
         bench.fault("slip 41 0")
         poll_round(bench)
+    assert bench.arm.torque == "on"
 
 
 def test_a_pair_has_to_disagree_three_times_in_succession(bench: Bench) -> None:
